@@ -1,0 +1,3 @@
+//! The program `gridwalk`.
+#![forbid(unsafe_code)]
+fn main() {}

@@ -1,0 +1,7 @@
+//! Uniform grids for ray tracing, as data and arithmetic: what the kernels compute, on the CPU and without Vulkan.
+#![forbid(unsafe_code)]
+
+pub mod kernel;
+pub mod ray;
+
+pub use ray::{Hit, MISS, Ray, UNFINISHED};

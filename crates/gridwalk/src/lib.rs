@@ -1,0 +1,1 @@
+//! Builds uniform grids and traces rays on a Vulkan device that it is given.

@@ -1,0 +1,1 @@
+//! Pictures by gridwalk: device, frame loop, shading and image files.

@@ -1,0 +1,2 @@
+//! Scene files: meshes, materials, textures, lights and cameras.
+#![forbid(unsafe_code)]

@@ -1,0 +1,3 @@
+//! `cargo tool`: the chores of this repository.
+#![forbid(unsafe_code)]
+fn main() {}
