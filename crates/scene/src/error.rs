@@ -1,0 +1,86 @@
+//! What can go wrong with a scene, each with the file, the place and the cure.
+
+use std::path::PathBuf;
+
+/// The result of this crate's functions.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Why a scene could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system refused.
+    #[error("cannot read {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// No such file, with a file of a similar name where there is one.
+    #[error("{} does not exist{}", path.display(), suggestion.as_ref().map(|name| format!(": did you mean {name}?")).unwrap_or_default())]
+    NotFound {
+        /// The file.
+        path: PathBuf,
+        /// The name of a neighbour.
+        suggestion: Option<String>,
+    },
+    /// A device, a pipe or a folder, which could block for ever or never end.
+    #[error("{} is not a regular file; read a stream by the name -", path.display())]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A path that leads out of the scene's folder.
+    #[error("{} lies outside the scene's folder {}; move it there, or allow it with --allow-external-paths", path.display(), root.display())]
+    Outside {
+        /// The path as it is after all links.
+        path: PathBuf,
+        /// The folder.
+        root: PathBuf,
+    },
+    /// A file beyond the cap for its kind.
+    #[error("{} has {bytes} bytes, more than the limit of {limit}; raise the limit if this is meant", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size, or for a stream what was read of it.
+        bytes: u64,
+        /// The cap.
+        limit: u64,
+    },
+    /// A file name whose ending says no format that can be read.
+    #[error("{}: cannot tell the format by the ending; readable are .obj and .toml", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A line of an OBJ file that cannot be read.
+    #[error("{file}:{line}: {message}")]
+    Obj {
+        /// The file, or `-`.
+        file: String,
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong, and the cure.
+        message: String,
+    },
+    /// A place of a scene file that cannot be read.
+    #[error("{file}:{line}: {message}")]
+    Description {
+        /// The file.
+        file: String,
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong, and the cure.
+        message: String,
+    },
+    /// A picture that the scene cannot do without and that cannot be read (a background).
+    #[error("{}: {message}", path.display())]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        message: String,
+    },
+}
