@@ -1,0 +1,650 @@
+//! The device of the renderer: memory, and submissions that are waited for.
+
+use crate::{
+    Error, Result,
+    device::{Candidate, DeviceInfo, DeviceKind, DeviceSelector, Instance},
+};
+use ash::{ext, vk};
+use bytemuck::{AnyBitPattern, NoUninit};
+use gpu_allocator::{
+    AllocationError, AllocationSizes, AllocatorDebugSettings, MemoryLocation,
+    vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc},
+};
+use std::{
+    ffi::CString,
+    fmt,
+    mem::ManuallyDrop,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+
+/// What to open a device for.
+#[derive(Clone, Debug, Default)]
+pub struct ContextDesc<'a> {
+    /// Which device.
+    pub device: DeviceSelector,
+    /// Turns the Khronos validation layer on, synchronization validation included. Messages wait in
+    /// [`Context::take_validation_messages`].
+    pub validation: bool,
+    /// Name of the device object in debuggers.
+    pub name: &'a str,
+    /// Bytes of device memory that may be used at most, below what the device has; for tests and for sharing a device.
+    pub memory_limit: Option<u64>,
+}
+
+/// Who reads and writes a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BufferKind {
+    /// The device alone; the host through copies (or directly, on a device that shares its memory).
+    Device,
+    /// Written by the host, read by the device.
+    Upload,
+    /// Written by the device, read by the host.
+    Readback,
+}
+
+/// Describes a buffer.
+#[derive(Clone, Copy, Debug)]
+pub struct BufferDesc<'a> {
+    /// Name in messages and debuggers.
+    pub name: &'a str,
+    /// Size in bytes; 0 is made 16, so that every buffer has an address.
+    pub size: u64,
+    /// Who reads and writes it.
+    pub kind: BufferKind,
+    /// Gives the buffer its own block of memory: for few large buffers that come and go, as the grid and its scratch do.
+    pub dedicated: bool,
+}
+
+/// An open device with one queue. Cheap to clone; the device is closed with the last clone and the last buffer.
+#[derive(Clone)]
+pub struct Context {
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    /// `None` only while dropping.
+    allocator: Mutex<Option<Allocator>>,
+    commands: Mutex<Commands>,
+    pipeline_cache: vk::PipelineCache,
+    device: ash::Device,
+    debug: Option<ext::debug_utils::Device>,
+    candidate: Candidate,
+    heap_budget: Budget,
+    /// Bytes of all living buffers.
+    allocated: AtomicU64,
+    /// Most bytes that lived at once.
+    peak: AtomicU64,
+    /// Set when the device was lost or a submission is still running after its time: nothing may be called or freed any more.
+    lost: AtomicBool,
+    abandoned: AtomicBool,
+    instance: ManuallyDrop<Instance>,
+}
+
+struct Commands {
+    pool: vk::CommandPool,
+    buffer: vk::CommandBuffer,
+    fence: vk::Fence,
+    queue: vk::Queue,
+}
+
+struct Budget {
+    heap: u32,
+    limit: Option<u64>,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl fmt::Debug for Context {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Context").field("device", &self.shared.candidate.info.name).finish_non_exhaustive()
+    }
+}
+
+/// Which part of a heap may be used: the rest belongs to the desktop and to other programs. (With a budget, 0.8 of it.)
+const HEAP_SHARE: f64 = 0.7;
+const BUDGET_SHARE: f64 = 0.8;
+
+/// Size of the pieces in which data travels to and from memory that the host cannot see.
+const STAGING_BYTES: u64 = 64 << 20;
+
+impl Context {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`Error::NoVulkan`], [`Error::NoDevice`] with every reason, [`Error::NoSuchDevice`], [`Error::NoValidationLayer`], or what a Vulkan
+    /// call returned.
+    pub fn new(desc: &ContextDesc<'_>) -> Result<Context> {
+        let instance = Instance::new(desc.validation)?;
+        let candidate = instance.select(&desc.device)?;
+        let priorities = [1.0];
+        let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(candidate.queue_family).queue_priorities(&priorities)];
+        let extensions: Vec<_> = candidate.extensions.iter().map(|name| name.as_ptr()).collect();
+        let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
+            .buffer_device_address(true)
+            .timeline_semaphore(true)
+            .host_query_reset(candidate.has_host_query_reset);
+        let mut features13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_extension_names(&extensions)
+            .push_next(&mut features12)
+            .push_next(&mut features13);
+        // SAFETY: the physical device comes from this instance; features and extensions were found on it; every pointer outlives the call.
+        let device = unsafe { instance.raw.create_device(candidate.handle, &info, None) }.map_err(Error::vulkan("vkCreateDevice"))?;
+        let debug = instance.debug.as_ref().map(|_| ext::debug_utils::Device::new(&instance.raw, &device));
+        // SAFETY: the handle comes from this instance.
+        let memory = unsafe { instance.raw.get_physical_device_memory_properties(candidate.handle) };
+        let heap = memory
+            .memory_heaps_as_slice()
+            .iter()
+            .enumerate()
+            .filter(|(_, heap)| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL))
+            .max_by_key(|(_, heap)| heap.size)
+            .map_or(0, |(index, _)| index);
+        // From here on `Shared` owns all that was made, and frees it whatever fails below: destroying null handles is allowed.
+        let mut shared = Shared {
+            allocator: Mutex::new(None),
+            commands: Mutex::new(Commands {
+                pool: vk::CommandPool::null(),
+                buffer: vk::CommandBuffer::null(),
+                fence: vk::Fence::null(),
+                queue: vk::Queue::null(),
+            }),
+            pipeline_cache: vk::PipelineCache::null(),
+            device,
+            debug,
+            heap_budget: Budget { heap: u32::try_from(heap).unwrap_or(0), limit: desc.memory_limit },
+            allocated: AtomicU64::new(0),
+            peak: AtomicU64::new(0),
+            lost: AtomicBool::new(false),
+            abandoned: AtomicBool::new(false),
+            candidate,
+            instance: ManuallyDrop::new(instance),
+        };
+        shared.init()?;
+        if !desc.name.is_empty() {
+            shared.set_name(shared.device.handle(), desc.name);
+        }
+        Ok(Context { shared: Arc::new(shared) })
+    }
+
+    /// The device and its limits.
+    pub fn device_info(&self) -> &DeviceInfo {
+        &self.shared.candidate.info
+    }
+
+    /// Whether the device is a CPU.
+    pub fn is_cpu(&self) -> bool {
+        self.device_info().kind == DeviceKind::Cpu
+    }
+
+    /// The logical device, for recording commands. It is closed with the context: do not keep it longer.
+    pub fn device(&self) -> &ash::Device {
+        &self.shared.device
+    }
+
+    /// The instance of the device.
+    pub fn instance(&self) -> &ash::Instance {
+        &self.shared.instance.raw
+    }
+
+    /// The physical device.
+    pub fn physical_device(&self) -> vk::PhysicalDevice {
+        self.shared.candidate.handle
+    }
+
+    /// A pipeline cache for all pipelines of the context.
+    pub fn pipeline_cache(&self) -> vk::PipelineCache {
+        self.shared.pipeline_cache
+    }
+
+    /// Whether the queue can take timestamps.
+    pub fn has_timestamps(&self) -> bool {
+        self.device_info().limits.timestamp_period_ns > 0.0
+    }
+
+    /// Bytes of all living buffers of the context.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.shared.allocated.load(Ordering::Relaxed)
+    }
+
+    /// Most bytes of buffers that lived at once.
+    pub fn peak_bytes(&self) -> u64 {
+        self.shared.peak.load(Ordering::Relaxed)
+    }
+
+    /// Takes the messages that the validation layer has sent since the last call; none when it is off.
+    pub fn take_validation_messages(&self) -> Vec<String> {
+        std::mem::take(&mut *lock(&self.shared.instance.messages.0))
+    }
+
+    /// Gives a Vulkan object of this device its name in debuggers and validation messages.
+    pub fn set_name<H: vk::Handle>(&self, handle: H, name: &str) {
+        self.shared.set_name(handle, name);
+    }
+
+    /// Bytes that can still be allocated, by the budget where the driver tells one.
+    pub fn available_bytes(&self) -> u64 {
+        self.shared.available()
+    }
+
+    /// Makes a buffer. Its content is undefined.
+    ///
+    /// # Errors
+    /// [`Error::OutOfDeviceMemory`] when it is larger than a buffer or an allocation may be, or than what is left of the budget;
+    /// [`Error::DeviceLost`] after a loss or a time-out.
+    pub fn buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
+        self.shared.check()?;
+        let size = desc.size.max(16).next_multiple_of(16);
+        let limits = &self.shared.candidate.info.limits;
+        let largest = limits.max_buffer_bytes.min(limits.max_allocation_bytes);
+        let available = self.shared.available().min(largest);
+        let out_of_memory = || Error::OutOfDeviceMemory { name: desc.name.to_owned(), needed: size, available };
+        if size > available {
+            return Err(out_of_memory());
+        }
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::TRANSFER_SRC
+            | vk::BufferUsageFlags::TRANSFER_DST
+            | vk::BufferUsageFlags::INDIRECT_BUFFER
+            | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
+        let device = &self.shared.device;
+        // SAFETY: the device lives; size and usage are valid, and the size is within the device's limit.
+        let raw = unsafe { device.create_buffer(&info, None) }.map_err(|result| match result {
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => out_of_memory(),
+            result => Error::vulkan("vkCreateBuffer")(result),
+        })?;
+        // Owns what exists so far; an early return destroys it.
+        let mut buffer =
+            Buffer { shared: Arc::clone(&self.shared), name: desc.name.to_owned(), raw, size, address: 0, allocation: None, counted: 0 };
+        // SAFETY: the buffer belongs to this device.
+        let requirements = unsafe { device.get_buffer_memory_requirements(raw) };
+        let location = match desc.kind {
+            BufferKind::Device => MemoryLocation::GpuOnly,
+            BufferKind::Upload => MemoryLocation::CpuToGpu,
+            BufferKind::Readback => MemoryLocation::GpuToCpu,
+        };
+        let allocation_scheme = if desc.dedicated { AllocationScheme::DedicatedBuffer(raw) } else { AllocationScheme::GpuAllocatorManaged };
+        let allocation = {
+            let mut allocator = lock(&self.shared.allocator);
+            let allocator = allocator.as_mut().ok_or(Error::DeviceLost)?;
+            allocator.allocate(&AllocationCreateDesc { name: desc.name, requirements, location, linear: true, allocation_scheme }).map_err(
+                |error| match error {
+                    AllocationError::OutOfMemory => out_of_memory(),
+                    other => Error::Allocator { name: desc.name.to_owned(), reason: other.to_string() },
+                },
+            )?
+        };
+        // SAFETY: the memory belongs to the allocation, which lives as long as the buffer and is bound to it alone at this offset.
+        let bound = unsafe { device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
+        buffer.allocation = Some(allocation);
+        buffer.counted = size;
+        let now = self.shared.allocated.fetch_add(size, Ordering::Relaxed) + size;
+        self.shared.peak.fetch_max(now, Ordering::Relaxed);
+        bound.map_err(Error::vulkan("vkBindBufferMemory"))?;
+        // SAFETY: the buffer has SHADER_DEVICE_ADDRESS usage and is bound to memory.
+        buffer.address = unsafe { device.get_buffer_device_address(&vk::BufferDeviceAddressInfo::default().buffer(raw)) };
+        self.shared.set_name(raw, desc.name);
+        Ok(buffer)
+    }
+
+    /// Makes a buffer for the device and fills it.
+    ///
+    /// # Errors
+    /// Those of [`Context::buffer`] and [`Context::submit`].
+    pub fn upload<T: NoUninit>(&self, name: &str, data: &[T]) -> Result<Buffer> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let buffer = self.buffer(&BufferDesc { name, size: bytes.len() as u64, kind: BufferKind::Device, dedicated: false })?;
+        buffer.write(0, data)?;
+        Ok(buffer)
+    }
+
+    /// Records commands, submits them and waits until the device has done them. All writes are visible to the host and to later
+    /// submissions afterwards. `label` names the submission in messages.
+    ///
+    /// The closure must record only commands whose objects outlive this call: it is what they are borrowed for.
+    ///
+    /// # Errors
+    /// What the closure returns; [`Error::Timeout`] after 60 s on a CPU and 10 s on a GPU; [`Error::DeviceLost`]; after both of these the
+    /// context is of no further use, and what it owns is given up rather than freed under a running device.
+    pub fn submit<R>(&self, label: &str, record: impl FnOnce(vk::CommandBuffer) -> Result<R>) -> Result<R> {
+        let commands = lock(&self.shared.commands);
+        self.shared.submit(&commands, label, record)
+    }
+
+    /// Destroys device objects of the caller, unless the device may still be using them.
+    pub(crate) fn destroy(&self, destroy: impl FnOnce(&ash::Device)) {
+        if !self.shared.abandoned.load(Ordering::Acquire) {
+            destroy(&self.shared.device);
+        }
+    }
+}
+
+impl Shared {
+    fn init(&mut self) -> Result<()> {
+        let Commands { pool, buffer, fence, queue } = self.commands.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let device = &self.device;
+        // SAFETY: the device lives, its only queue family has one queue, and every info is complete. The pool and the fence are owned by
+        // `self` from the moment of their creation.
+        unsafe {
+            *queue = device.get_device_queue(self.candidate.queue_family, 0);
+            *pool = device
+                .create_command_pool(
+                    &vk::CommandPoolCreateInfo::default()
+                        .flags(vk::CommandPoolCreateFlags::TRANSIENT)
+                        .queue_family_index(self.candidate.queue_family),
+                    None,
+                )
+                .map_err(Error::vulkan("vkCreateCommandPool"))?;
+            let buffers = device
+                .allocate_command_buffers(&vk::CommandBufferAllocateInfo::default().command_pool(*pool).command_buffer_count(1))
+                .map_err(Error::vulkan("vkAllocateCommandBuffers"))?;
+            *buffer = buffers.first().copied().unwrap_or_default();
+            *fence = device.create_fence(&vk::FenceCreateInfo::default(), None).map_err(Error::vulkan("vkCreateFence"))?;
+            self.pipeline_cache = device
+                .create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None)
+                .map_err(Error::vulkan("vkCreatePipelineCache"))?;
+        }
+        const MIB: u64 = 1 << 20;
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: self.instance.raw.clone(),
+            device: self.device.clone(),
+            physical_device: self.candidate.handle,
+            debug_settings: AllocatorDebugSettings::default(),
+            buffer_device_address: true,
+            allocation_sizes: AllocationSizes::new(8 * MIB, 8 * MIB)
+                .with_max_device_memblock_size(64 * MIB)
+                .with_max_host_memblock_size(64 * MIB),
+        })
+        .map_err(|error| Error::Allocator { name: "the allocator".to_owned(), reason: error.to_string() })?;
+        *self.allocator.get_mut().unwrap_or_else(PoisonError::into_inner) = Some(allocator);
+        Ok(())
+    }
+
+    fn set_name<H: vk::Handle>(&self, handle: H, name: &str) {
+        let (Some(debug), Ok(name)) = (&self.debug, CString::new(name)) else { return };
+        // SAFETY: the handle belongs to this device. A name is a help: a failure to set it changes nothing.
+        let _ = unsafe {
+            debug.set_debug_utils_object_name(&vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name))
+        };
+    }
+
+    fn check(&self) -> Result<()> {
+        if self.lost.load(Ordering::Acquire) { Err(Error::DeviceLost) } else { Ok(()) }
+    }
+
+    /// lavapipe hands out more than its heap and its limits; so what may be used is reckoned here.
+    fn available(&self) -> u64 {
+        let heap = self.heap_budget.heap as usize;
+        let used = self.allocated.load(Ordering::Relaxed);
+        let left = if self.candidate.has_budget {
+            let mut budget = vk::PhysicalDeviceMemoryBudgetPropertiesEXT::default();
+            let mut memory = vk::PhysicalDeviceMemoryProperties2::default().push_next(&mut budget);
+            // SAFETY: the physical device has the budget extension, so it knows both structs.
+            unsafe { self.instance.raw.get_physical_device_memory_properties2(self.candidate.handle, &mut memory) };
+            let total = budget.heap_budget.get(heap).copied().unwrap_or(0);
+            let usage = budget.heap_usage.get(heap).copied().unwrap_or(0);
+            share(total, BUDGET_SHARE).saturating_sub(usage)
+        } else {
+            share(self.candidate.info.limits.heap_bytes, HEAP_SHARE).saturating_sub(used)
+        };
+        self.heap_budget.limit.map_or(left, |limit| left.min(limit.saturating_sub(used)))
+    }
+
+    fn submit<R>(&self, commands: &Commands, label: &str, record: impl FnOnce(vk::CommandBuffer) -> Result<R>) -> Result<R> {
+        self.check()?;
+        let lost = |error: Error| {
+            if matches!(error, Error::DeviceLost) {
+                self.lost.store(true, Ordering::Release);
+            }
+            error
+        };
+        let device = &self.device;
+        let cmd = commands.buffer;
+        // SAFETY: the lock on `commands` is held, and every earlier submission was waited for, so that pool, command buffer and fence are
+        // idle. What the closure records lives until this function returns, which is after the device has finished; if it does not finish,
+        // `abandoned` keeps everything of this context from being freed.
+        unsafe {
+            device
+                .reset_command_pool(commands.pool, vk::CommandPoolResetFlags::empty())
+                .map_err(Error::vulkan("vkResetCommandPool"))
+                .map_err(lost)?;
+            device.reset_fences(&[commands.fence]).map_err(Error::vulkan("vkResetFences")).map_err(lost)?;
+            device
+                .begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT))
+                .map_err(Error::vulkan("vkBeginCommandBuffer"))
+                .map_err(lost)?;
+            let labelled = self.debug.as_ref().zip(CString::new(label).ok());
+            if let Some((debug, label)) = &labelled {
+                debug.cmd_begin_debug_utils_label(cmd, &vk::DebugUtilsLabelEXT::default().label_name(label));
+            }
+            let recorded = record(cmd);
+            if let Some((debug, _)) = &labelled {
+                debug.cmd_end_debug_utils_label(cmd);
+            }
+            let barrier = vk::MemoryBarrier2::default()
+                .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+                .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+                .dst_stage_mask(vk::PipelineStageFlags2::HOST | vk::PipelineStageFlags2::ALL_COMMANDS)
+                .dst_access_mask(vk::AccessFlags2::HOST_READ | vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE);
+            device.cmd_pipeline_barrier2(cmd, &vk::DependencyInfo::default().memory_barriers(&[barrier]));
+            device.end_command_buffer(cmd).map_err(Error::vulkan("vkEndCommandBuffer")).map_err(lost)?;
+            let recorded = recorded?;
+            let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(cmd)];
+            let submits = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
+            device.queue_submit2(commands.queue, &submits, commands.fence).map_err(Error::vulkan("vkQueueSubmit2")).map_err(lost)?;
+            let timeout = Duration::from_secs(if self.candidate.info.kind == DeviceKind::Cpu { 60 } else { 10 });
+            let nanoseconds = u64::try_from(timeout.as_nanos()).unwrap_or(u64::MAX);
+            match device.wait_for_fences(&[commands.fence], true, nanoseconds) {
+                Ok(()) => Ok(recorded),
+                Err(vk::Result::TIMEOUT) => {
+                    self.lost.store(true, Ordering::Release);
+                    self.abandoned.store(true, Ordering::Release);
+                    Err(Error::Timeout { label: label.to_owned(), seconds: timeout.as_secs() })
+                }
+                Err(result) => {
+                    // Whether the work still runs is unknown.
+                    self.lost.store(true, Ordering::Release);
+                    if result != vk::Result::ERROR_DEVICE_LOST {
+                        self.abandoned.store(true, Ordering::Release);
+                    }
+                    Err(Error::vulkan("vkWaitForFences")(result))
+                }
+            }
+        }
+    }
+}
+
+fn share(bytes: u64, part: f64) -> u64 {
+    (bytes as f64 * part) as u64
+}
+
+impl Drop for Shared {
+    fn drop(&mut self) {
+        if self.abandoned.load(Ordering::Acquire) {
+            // The device is still running what it was given: freeing anything under it would be worse than leaking it.
+            std::mem::forget(lock(&self.allocator).take());
+            return;
+        }
+        let commands = self.commands.get_mut().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the last context and the last buffer are gone and every submission was waited for, so nothing of this device is in use;
+        // null handles may be destroyed. The allocator frees its memory before the device goes, the device before the instance.
+        unsafe {
+            drop(self.allocator.get_mut().unwrap_or_else(PoisonError::into_inner).take());
+            self.device.destroy_fence(commands.fence, None);
+            self.device.destroy_command_pool(commands.pool, None);
+            self.device.destroy_pipeline_cache(self.pipeline_cache, None);
+            self.device.destroy_device(None);
+            ManuallyDrop::drop(&mut self.instance);
+        }
+    }
+}
+
+/// Memory of the device, with its address. Freed when dropped; keeps the device open.
+pub struct Buffer {
+    shared: Arc<Shared>,
+    name: String,
+    raw: vk::Buffer,
+    size: u64,
+    address: vk::DeviceAddress,
+    allocation: Option<Allocation>,
+    counted: u64,
+}
+
+impl fmt::Debug for Buffer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Buffer").field("name", &self.name).field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+impl Buffer {
+    /// The Vulkan buffer.
+    pub fn raw(&self) -> vk::Buffer {
+        self.raw
+    }
+
+    /// Size in bytes, a multiple of 16.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// Device address of the first byte.
+    pub fn address(&self) -> vk::DeviceAddress {
+        self.address
+    }
+
+    /// Name, as given.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn context(&self) -> Context {
+        Context { shared: Arc::clone(&self.shared) }
+    }
+
+    fn check(&self, offset: u64, bytes: usize) -> Result<()> {
+        let end = offset.saturating_add(bytes as u64);
+        if end > self.size {
+            return Err(Error::OutOfRange { name: self.name.clone(), size: self.size, begin: offset, end });
+        }
+        Ok(())
+    }
+
+    /// Where the host sees the memory, if it does without flushes; `cached` asks for memory that is fast to read.
+    fn mapped(&self, cached: bool) -> Option<*mut u8> {
+        let allocation = self.allocation.as_ref()?;
+        let mut wanted = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+        if cached {
+            wanted |= vk::MemoryPropertyFlags::HOST_CACHED;
+        }
+        if !allocation.memory_properties().contains(wanted) {
+            return None;
+        }
+        allocation.mapped_ptr().map(|pointer| pointer.as_ptr().cast())
+    }
+
+    /// Copies data into the buffer, `offset` bytes from its beginning (a multiple of 4).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`], or those of [`Context::submit`] where the host cannot see the memory.
+    pub fn write<T: NoUninit>(&self, offset: u64, data: &[T]) -> Result<()> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        self.check(offset, bytes.len())?;
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        self.shared.check()?;
+        if let Some(pointer) = self.mapped(false) {
+            // Held for the copy: no submission runs, and no other thread copies into the same bytes.
+            let _commands = lock(&self.shared.commands);
+            // SAFETY: the allocation maps `size` bytes from `pointer`, and `offset + bytes` is within; the source is borrowed, so it does not
+            // overlap; the lock keeps others out.
+            unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), pointer.add(offset as usize), bytes.len()) };
+            return Ok(());
+        }
+        let context = self.context();
+        let piece = STAGING_BYTES.min(bytes.len() as u64);
+        let staging = context.buffer(&BufferDesc { name: "upload staging", size: piece, kind: BufferKind::Upload, dedicated: false })?;
+        let mut at = offset;
+        for chunk in bytes.chunks(piece as usize) {
+            staging.write(0, chunk)?;
+            context.copy(&staging, 0, self, at, chunk.len() as u64)?;
+            at += chunk.len() as u64;
+        }
+        Ok(())
+    }
+
+    /// Copies `count` elements out of the buffer, `offset` bytes from its beginning (a multiple of 4).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`], or those of [`Context::submit`] where the host cannot see the memory.
+    pub fn read<T: AnyBitPattern + NoUninit>(&self, offset: u64, count: usize) -> Result<Vec<T>> {
+        let length = count.saturating_mul(size_of::<T>());
+        self.check(offset, length)?;
+        let mut data = vec![T::zeroed(); count];
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut data);
+        if bytes.is_empty() {
+            return Ok(data);
+        }
+        self.shared.check()?;
+        if let Some(pointer) = self.mapped(true) {
+            let _commands = lock(&self.shared.commands);
+            // SAFETY: as in `write`; the device has finished (every submission is waited for, with a barrier to the host).
+            unsafe { std::ptr::copy_nonoverlapping(pointer.add(offset as usize), bytes.as_mut_ptr(), bytes.len()) };
+            return Ok(data);
+        }
+        let context = self.context();
+        let piece = STAGING_BYTES.min(bytes.len() as u64);
+        let staging =
+            context.buffer(&BufferDesc { name: "read-back staging", size: piece, kind: BufferKind::Readback, dedicated: false })?;
+        let Some(pointer) = staging.mapped(false) else {
+            return Err(Error::Allocator { name: staging.name.clone(), reason: "the host cannot see read-back memory".to_owned() });
+        };
+        let mut at = offset;
+        for chunk in bytes.chunks_mut(piece as usize) {
+            context.copy(self, at, &staging, 0, chunk.len() as u64)?;
+            // SAFETY: the staging buffer belongs to this call alone, maps `piece` bytes, and the device has finished.
+            unsafe { std::ptr::copy_nonoverlapping(pointer, chunk.as_mut_ptr(), chunk.len()) };
+            at += chunk.len() as u64;
+        }
+        Ok(data)
+    }
+}
+
+impl Context {
+    /// Copies bytes between two buffers and waits. Both ranges were checked by the caller.
+    fn copy(&self, from: &Buffer, from_offset: u64, to: &Buffer, to_offset: u64, size: u64) -> Result<()> {
+        self.submit("copy", |cmd| {
+            let region = vk::BufferCopy { src_offset: from_offset, dst_offset: to_offset, size };
+            // SAFETY: the command buffer is recording; both buffers live until the submission is done and hold the ranges.
+            unsafe { self.device().cmd_copy_buffer(cmd, from.raw, to.raw, &[region]) };
+            Ok(())
+        })
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        let allocation = self.allocation.take();
+        self.shared.allocated.fetch_sub(self.counted, Ordering::Relaxed);
+        if self.shared.abandoned.load(Ordering::Acquire) {
+            std::mem::forget(allocation);
+            return;
+        }
+        // SAFETY: every submission that used the buffer was waited for.
+        unsafe { self.shared.device.destroy_buffer(self.raw, None) };
+        if let Some(allocation) = allocation
+            && let Some(allocator) = lock(&self.shared.allocator).as_mut()
+        {
+            // The allocator refuses only what it did not allocate.
+            let _ = allocator.free(allocation);
+        }
+    }
+}
