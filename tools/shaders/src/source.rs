@@ -1,0 +1,189 @@
+//! Where the GLSL lies, and what includes what.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+
+/// A crate that owns kernels.
+#[derive(Debug)]
+pub struct Owner {
+    /// Folder below `crates/`.
+    pub name: &'static str,
+    /// Folder of its sources, below the root; holds `map/` and `cooperative/`.
+    pub sources: &'static str,
+    /// Module path, seen from the crate, of the types of the kernel table.
+    pub kernel_types: &'static str,
+    /// The public include that the crate carries in one piece, below `glsl/`.
+    pub public_include: Option<&'static str>,
+}
+
+/// All crates that own kernels.
+pub const OWNERS: [Owner; 2] = [
+    Owner {
+        name: "gridwalk",
+        sources: "glsl",
+        kernel_types: "gridwalk_core::kernel",
+        public_include: Some("shared/gridwalk.glsl"),
+    },
+    Owner { name: "render", sources: "glsl/render", kernel_types: "gridwalk::kernel", public_include: None },
+];
+
+impl Owner {
+    /// The crate's folder.
+    pub fn folder(&self, root: &Path) -> PathBuf {
+        root.join("crates").join(self.name)
+    }
+
+    /// The crate's kernels, ordered by name. Two kernels of one name are an error.
+    pub fn kernels(&self, root: &Path) -> Result<Vec<KernelSource>> {
+        let mut kernels = Vec::new();
+        for kind in ["map", "cooperative"] {
+            let folder = format!("{}/{kind}", self.sources);
+            for path in files(&root.join(&folder), "comp")? {
+                let name = path.file_stem().and_then(|s| s.to_str()).with_context(|| format!("{}: not UTF-8", path.display()))?;
+                if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_')) {
+                    bail!("{}: a kernel's name is snake_case", path.display());
+                }
+                kernels.push(KernelSource { name: name.to_owned(), kind, path: format!("{folder}/{name}.comp") });
+            }
+        }
+        kernels.sort_by(|a, b| a.name.cmp(&b.name));
+        if let Some(pair) = kernels.windows(2).find(|pair| pair[0].name == pair[1].name) {
+            bail!("two kernels of one name: {} and {}", pair[0].path, pair[1].path);
+        }
+        Ok(kernels)
+    }
+}
+
+/// A kernel's source file.
+#[derive(Debug, Clone)]
+pub struct KernelSource {
+    /// File name without its extension.
+    pub name: String,
+    /// `map` or `cooperative`, by the folder.
+    pub kind: &'static str,
+    /// Path below the root, with `/`.
+    pub path: String,
+}
+
+/// The root of the repository: the nearest folder at or above `start` with both `glsl/` and `crates/`.
+pub fn find_root(start: &Path) -> Result<PathBuf> {
+    let start = start.canonicalize().with_context(|| format!("{}: cannot be opened", start.display()))?;
+    start
+        .ancestors()
+        .find(|folder| folder.join("glsl").is_dir() && folder.join("crates").is_dir())
+        .map(Path::to_owned)
+        .with_context(|| format!("{}: not inside the repository (no folder with glsl/ and crates/ above)", start.display()))
+}
+
+/// Files directly in `folder` with the given extension, in order of name; none when there is no such folder.
+pub fn files(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).with_context(|| format!("{}: cannot be listed", folder.display()))? {
+        let path = entry.with_context(|| format!("{}: cannot be listed", folder.display()))?.path();
+        if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Reads a text file below the root.
+pub fn read(root: &Path, path: &str) -> Result<String> {
+    fs::read_to_string(root.join(path)).with_context(|| format!("{path}: cannot be read"))
+}
+
+/// The name in an `#include "..."` line, if the line is one.
+pub fn included(line: &str) -> Option<&str> {
+    let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?.trim_start();
+    rest.strip_prefix('"')?.split_once('"').map(|(name, _)| name)
+}
+
+/// A source file and everything that it includes, by path below the root. Conditions are not evaluated: an include that the preprocessor
+/// would skip counts too.
+pub fn closure(root: &Path, path: &str) -> Result<BTreeMap<String, String>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![path.to_owned()];
+    while let Some(path) = open.pop() {
+        if found.contains_key(&path) {
+            continue;
+        }
+        let text = read(root, &path)?;
+        for (index, line) in text.lines().enumerate() {
+            if let Some(name) = included(line) {
+                let target = format!("glsl/{name}");
+                if !root.join(&target).is_file() {
+                    bail!("{path}:{}: no such include: {target} (names count from glsl/)", index + 1);
+                }
+                open.push(target);
+            }
+        }
+        found.insert(path, text);
+    }
+    Ok(found)
+}
+
+/// A source file with its includes in place, each at its first mention only. Every included file must have an include guard, since that is
+/// what makes leaving out the later mentions sound.
+pub fn in_one_piece(root: &Path, path: &str) -> Result<String> {
+    let mut out = format!("// Made by `cargo tool shaders` from {path} and its includes: edit those.\n");
+    let mut seen = vec![path.to_owned()];
+    expand(root, path, &mut seen, &mut out)?;
+    Ok(out)
+}
+
+fn expand(root: &Path, path: &str, seen: &mut Vec<String>, out: &mut String) -> Result<()> {
+    let text = read(root, path)?;
+    if !has_guard(&text) {
+        bail!("{path}: needs an include guard (#ifndef NAME, #define NAME, ..., #endif)");
+    }
+    for line in text.lines() {
+        match included(line) {
+            Some(name) => {
+                let target = format!("glsl/{name}");
+                if !seen.contains(&target) {
+                    seen.push(target.clone());
+                    expand(root, &target, seen, out)?;
+                }
+            }
+            None if line.contains("GL_GOOGLE_include_directive") => {}
+            None => {
+                out.push_str(line);
+                out.push('\n');
+            }
+        }
+    }
+    Ok(())
+}
+
+fn has_guard(text: &str) -> bool {
+    let mut directives = text.lines().map(str::trim).filter(|line| line.starts_with('#'));
+    let Some(name) = directives.next().and_then(|line| line.strip_prefix("#ifndef ")) else { return false };
+    directives.next().and_then(|line| line.strip_prefix("#define ")).is_some_and(|defined| defined.trim() == name.trim())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn include_lines() {
+        assert_eq!(included("  # include \"shared/a.glsl\" // why"), Some("shared/a.glsl"));
+        assert_eq!(included("// #include \"shared/a.glsl\""), None);
+        assert_eq!(included("#include <a>"), None);
+    }
+
+    #[test]
+    fn guards() {
+        assert!(has_guard("// text\n#ifndef A\n#define A\nint x;\n#endif\n"));
+        assert!(!has_guard("#ifndef A\n#define B\n#endif\n"));
+        assert!(!has_guard("int x;\n"));
+    }
+}
