@@ -3,6 +3,7 @@
 mod context;
 mod device;
 mod error;
+pub mod image;
 mod layers;
 
 pub use context::{Buffer, BufferDesc, BufferKind, Context, ContextDesc};
