@@ -31,17 +31,16 @@ pub fn generate(root: &Path, only: &[String]) -> Result<Vec<Generated>> {
     if let Some(name) = only.iter().find(|name| OWNERS.iter().all(|owner| owner.name != **name)) {
         bail!("{name}: no such crate with kernels; there are: {}", OWNERS.map(|owner| owner.name).join(", "));
     }
-    let owners = OWNERS.iter().filter(|owner| only.is_empty() || only.iter().any(|name| name == owner.name));
-    let mut jobs = Vec::new();
-    for owner in owners.clone() {
-        jobs.extend(owner.kernels(root)?);
-    }
+    let chosen = OWNERS.iter().filter(|owner| only.is_empty() || only.iter().any(|name| name == owner.name));
+    let sources = chosen.map(|owner| Ok((owner, owner.kernels(root)?))).collect::<Result<Vec<_>>>()?;
+    let jobs: Vec<&KernelSource> = sources.iter().flat_map(|(_, kernels)| kernels).collect();
+    let count = jobs.len();
     let mut results = compile_all(root, &jobs)?.into_iter();
     let mut failures = Vec::new();
     let mut all = Vec::new();
-    for owner in owners {
+    for (owner, sources) in sources {
         let mut kernels = Vec::new();
-        for (kernel, result) in jobs_of(owner, root)?.into_iter().zip(&mut results) {
+        for (kernel, result) in sources.into_iter().zip(results.by_ref()) {
             match result {
                 Ok(reflected) => kernels.push((kernel, reflected)),
                 Err(error) => failures.push(format!("{error:#}")),
@@ -50,17 +49,13 @@ pub fn generate(root: &Path, only: &[String]) -> Result<Vec<Generated>> {
         all.push((owner, kernels));
     }
     if !failures.is_empty() {
-        bail!("{}\n{} of {} kernels failed; nothing is written", failures.join("\n"), failures.len(), jobs.len());
+        bail!("{}\n{} of {count} kernels failed; nothing is written", failures.join("\n"), failures.len());
     }
     all.into_iter().map(|(owner, kernels)| assemble(root, owner, kernels)).collect()
 }
 
-fn jobs_of(owner: &Owner, root: &Path) -> Result<Vec<KernelSource>> {
-    owner.kernels(root)
-}
-
 /// Compiles on all cores; the results are in the order of the kernels.
-fn compile_all(root: &Path, kernels: &[KernelSource]) -> Result<Vec<Result<Reflected>>> {
+fn compile_all(root: &Path, kernels: &[&KernelSource]) -> Result<Vec<Result<Reflected>>> {
     let next = AtomicUsize::new(0);
     let results = Mutex::new(BTreeMap::new());
     std::thread::scope(|scope| {

@@ -21,12 +21,7 @@ pub struct Owner {
 
 /// All crates that own kernels.
 pub const OWNERS: [Owner; 2] = [
-    Owner {
-        name: "gridwalk",
-        sources: "glsl",
-        kernel_types: "gridwalk_core::kernel",
-        public_include: Some("shared/gridwalk.glsl"),
-    },
+    Owner { name: "gridwalk", sources: "glsl", kernel_types: "gridwalk_core::kernel", public_include: Some("shared/gridwalk.glsl") },
     Owner { name: "render", sources: "glsl/render", kernel_types: "gridwalk::kernel", public_include: None },
 ];
 
@@ -43,7 +38,9 @@ impl Owner {
             let folder = format!("{}/{kind}", self.sources);
             for path in files(&root.join(&folder), "comp")? {
                 let name = path.file_stem().and_then(|s| s.to_str()).with_context(|| format!("{}: not UTF-8", path.display()))?;
-                if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_')) {
+                if !name.starts_with(|c: char| c.is_ascii_lowercase())
+                    || !name.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_'))
+                {
                     bail!("{}: a kernel's name is snake_case", path.display());
                 }
                 kernels.push(KernelSource { name: name.to_owned(), kind, path: format!("{folder}/{name}.comp") });

@@ -203,8 +203,8 @@ impl<'a> Tables<'a> {
     /// The structure behind a type that is a buffer reference.
     fn referenced(&self, target: u32) -> Result<Option<u32>> {
         let ty = self.global(target)?;
-        let reference = ty.class.opcode == Op::TypePointer
-            && ty.operands.first() == Some(&Operand::StorageClass(StorageClass::PhysicalStorageBuffer));
+        let reference =
+            ty.class.opcode == Op::TypePointer && ty.operands.first() == Some(&Operand::StorageClass(StorageClass::PhysicalStorageBuffer));
         Ok(if reference { id(ty, 1) } else { None })
     }
 
@@ -318,9 +318,10 @@ fn local_size(module: &Module, tables: &Tables) -> Result<([u32; 3], [Option<u32
 type Push = (Option<Layout>, Vec<(String, bool, bool)>);
 
 fn push_constants(module: &Module, tables: &Tables) -> Result<Push> {
-    let variable = module.types_global_values.iter().find(|i| {
-        i.class.opcode == Op::Variable && i.operands.first() == Some(&Operand::StorageClass(StorageClass::PushConstant))
-    });
+    let variable = module
+        .types_global_values
+        .iter()
+        .find(|i| i.class.opcode == Op::Variable && i.operands.first() == Some(&Operand::StorageClass(StorageClass::PushConstant)));
     let Some(variable) = variable else { return Ok((None, Vec::new())) };
     let pointer = tables.global(variable.result_type.context("push constants without type")?)?;
     let block = id(pointer, 1).context("push constants without block")?;
@@ -349,9 +350,7 @@ fn layouts(module: &Module, tables: &Tables) -> Result<BTreeMap<String, Layout>>
     for target in structs.filter_map(|i| i.result_id) {
         let Some(mut layout) = tables.layout(target)? else { continue };
         let arrays = module.types_global_values.iter().filter(|i| matches!(i.class.opcode, Op::TypeArray | Op::TypeRuntimeArray));
-        layout.stride = arrays
-            .filter(|i| id(i, 0) == Some(target))
-            .find_map(|i| tables.decoration(i.result_id?, Decoration::ArrayStride));
+        layout.stride = arrays.filter(|i| id(i, 0) == Some(target)).find_map(|i| tables.decoration(i.result_id?, Decoration::ArrayStride));
         if layout.name.is_empty() || layout.members.is_empty() {
             continue;
         }
@@ -367,7 +366,8 @@ pub fn merge(known: &mut BTreeMap<String, Layout>, layout: Layout) -> Result<()>
             known.insert(layout.name.clone(), layout);
         }
         Some(other) => {
-            let differs = other.members != layout.members || (other.stride.is_some() && layout.stride.is_some() && other.stride != layout.stride);
+            let differs =
+                other.members != layout.members || (other.stride.is_some() && layout.stride.is_some() && other.stride != layout.stride);
             if differs {
                 bail!("two layouts have the name {}", layout.name);
             }
