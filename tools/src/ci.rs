@@ -1,0 +1,246 @@
+//! `cargo tool ci`: what CI does, in its order.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+
+use crate::process::{self, Root};
+use crate::{drivers, shaders};
+
+/// What `cargo tool ci` may be told.
+#[derive(Args)]
+pub struct Arguments {
+    /// Only this step; may be given again
+    #[arg(long, value_name = "STEP")]
+    only: Vec<String>,
+    /// Leave this step out; may be given again
+    #[arg(long, value_name = "STEP")]
+    skip: Vec<String>,
+    /// Print the steps and do nothing
+    #[arg(long)]
+    list: bool,
+}
+
+struct Step {
+    name: &'static str,
+    about: &'static str,
+    run: fn(&Root) -> Result<Outcome>,
+}
+
+enum Outcome {
+    Passed,
+    /// Could not be done here, and why; counts as passed, but is said.
+    Skipped(String),
+}
+
+/// The full test suite comes last, so that its closing line is the last thing before the summary.
+const STEPS: [Step; 10] = [
+    Step { name: "format", about: "rustfmt has nothing to change", run: format },
+    Step { name: "clippy", about: "no warning in any crate, test or tool", run: clippy },
+    Step { name: "doc", about: "documentation builds without a warning", run: doc },
+    Step { name: "shaders", about: "what is made from GLSL is as committed, compiled anew", run: check_shaders },
+    Step { name: "clippy-shaders", about: "no warning in the shader tool", run: clippy_shaders },
+    Step { name: "spirv-val", about: "every committed SPIR-V module is valid", run: spirv_val },
+    Step { name: "matrix", about: "lavapipe's vector widths and thread counts: the tests pass on each", run: matrix },
+    Step { name: "pictures", about: "the same: four pictures are equal bit for bit", run: pictures },
+    Step { name: "swiftshader", about: "the tests pass on SwiftShader, under a current validation layer", run: swiftshader },
+    Step { name: "test", about: "the whole suite, under the validation layers", run: test },
+];
+
+/// What the matrix and the second driver run: everything that computes on the device, but not the whole suite.
+const DEVICE_TESTS: [&str; 3] = ["kernels::", "rebuild::", "traverse::"];
+
+/// Runs the steps; the first failure ends it.
+pub fn run(root: &Root, arguments: &Arguments) -> Result<ExitCode> {
+    if let Some(name) = arguments.only.iter().chain(&arguments.skip).find(|name| STEPS.iter().all(|step| step.name != **name)) {
+        bail!("{name}: no such step; there are: {}", STEPS.map(|step| step.name).join(", "));
+    }
+    if arguments.list {
+        for step in &STEPS {
+            println!("{:<15} {}", step.name, step.about);
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut summary = String::new();
+    let mut failed = false;
+    for step in &STEPS {
+        if (!arguments.only.is_empty() && !arguments.only.iter().any(|name| name == step.name))
+            || arguments.skip.iter().any(|name| name == step.name)
+        {
+            continue;
+        }
+        eprintln!("==> {}: {}", step.name, step.about);
+        let start = Instant::now();
+        let result = (step.run)(root);
+        let verdict = match &result {
+            Ok(Outcome::Passed) => "passed".to_owned(),
+            Ok(Outcome::Skipped(why)) => format!("SKIPPED: {why}"),
+            Err(error) => format!("FAILED: {error:#}"),
+        };
+        summary += &format!("{:<15} {:>7}  {verdict}\n", step.name, seconds(start.elapsed()));
+        if result.is_err() {
+            failed = true;
+            summary += &format!("again: cargo tool ci --only {}\n", step.name);
+            break;
+        }
+    }
+    eprint!("\n{summary}");
+    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+fn seconds(duration: Duration) -> String {
+    format!("{:.1} s", duration.as_secs_f32())
+}
+
+fn cargo(root: &Root, arguments: &[&str]) -> Command {
+    let mut command = Command::new("cargo");
+    command.args(arguments).current_dir(&**root);
+    command
+}
+
+fn passed(command: &mut Command) -> Result<Outcome> {
+    process::run(command).map(|()| Outcome::Passed)
+}
+
+fn format(root: &Root) -> Result<Outcome> {
+    passed(&mut cargo(root, &["fmt", "--all", "--check"]))
+}
+
+fn clippy(root: &Root) -> Result<Outcome> {
+    passed(&mut cargo(root, &["clippy", "--workspace", "--all-targets", "--features", "gridwalk-tools/bench", "--", "-D", "warnings"]))
+}
+
+fn doc(root: &Root) -> Result<Outcome> {
+    passed(cargo(root, &["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+fn check_shaders(root: &Root) -> Result<Outcome> {
+    passed(&mut shaders::command(root, &["--check".to_owned()])?)
+}
+
+fn clippy_shaders(root: &Root) -> Result<Outcome> {
+    passed(shaders::cargo(root, "clippy").args(["--all-targets", "--", "-D", "warnings"]))
+}
+
+fn spirv_val(root: &Root) -> Result<Outcome> {
+    if !process::installed("spirv-val") {
+        return Ok(Outcome::Skipped("spirv-val is not installed: apt-get install spirv-tools".to_owned()));
+    }
+    let mut count = 0;
+    for owner in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
+        for module in fs::read_dir(owner?.path().join("spirv")).into_iter().flatten() {
+            let module = module?.path();
+            if module.extension() == Some(OsStr::new("spv")) {
+                process::run(Command::new("spirv-val").args(["--target-env", "vulkan1.2"]).arg(&module))?;
+                count += 1;
+            }
+        }
+    }
+    if count == 0 {
+        bail!("no SPIR-V found");
+    }
+    eprintln!("{count} modules are valid");
+    Ok(Outcome::Passed)
+}
+
+fn test(root: &Root) -> Result<Outcome> {
+    // The suite's own output is what CI is read by: it goes where it would without this tool.
+    let status = Command::new(root.join("tools/test")).current_dir(&**root).stdin(Stdio::null()).status();
+    if !status.context("tools/test cannot be started")?.success() {
+        bail!("tools/test failed");
+    }
+    Ok(Outcome::Passed)
+}
+
+type Environment = Vec<(&'static str, String)>;
+
+/// The settings of lavapipe that change how kernels are run: subgroups of 4, 8 and 16, and one worker or two.
+fn settings() -> impl Iterator<Item = Environment> {
+    ["128", "256", "512"].into_iter().flat_map(|width| {
+        ["1", "2"].map(|threads| vec![("LP_NATIVE_VECTOR_WIDTH", width.to_owned()), ("LP_NUM_THREADS", threads.to_owned())])
+    })
+}
+
+fn describe(environment: &Environment) -> String {
+    environment.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(" ")
+}
+
+/// Runs the device tests in an environment. Their output is shown only if they fail; that none ran is a failure.
+fn device_tests(root: &Root, environment: &Environment) -> Result<()> {
+    let start = Instant::now();
+    let mut command = cargo(root, &["test", "--quiet", "--workspace", "--test", "tests", "--"]);
+    command.args(DEVICE_TESTS).envs(environment.iter().map(|(name, value)| (name, value))).stdin(Stdio::null());
+    let output = command.output().context("cargo cannot be started")?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let closing = text.lines().find(|line| line.starts_with("test result:")).unwrap_or("no test result");
+    if !output.status.success() || closing.contains(" 0 passed") || !closing.contains(" passed") {
+        eprint!("{text}{}", String::from_utf8_lossy(&output.stderr));
+        bail!("{} {}: {closing}", describe(environment), process::line(&command));
+    }
+    let counts = closing.trim_start_matches("test result: ok. ").split("; finished").next().unwrap_or_default();
+    eprintln!("{}: {counts}, {}", describe(environment), seconds(start.elapsed()));
+    Ok(())
+}
+
+fn matrix(root: &Root) -> Result<Outcome> {
+    for environment in settings() {
+        device_tests(root, &environment)?;
+    }
+    Ok(Outcome::Passed)
+}
+
+fn swiftshader(root: &Root) -> Result<Outcome> {
+    let fetched = drivers::environment("swiftshader").and_then(|mut all| {
+        all.extend(drivers::environment("validation")?);
+        Ok(all)
+    });
+    match fetched {
+        Ok(environment) => device_tests(root, &environment).map(|()| Outcome::Passed),
+        Err(error) => Ok(Outcome::Skipped(format!("SwiftShader cannot be had here: {error:#}"))),
+    }
+}
+
+/// Renders four scenes with every setting and compares the files with those of the first.
+fn pictures(root: &Root) -> Result<Outcome> {
+    process::run(&mut cargo(root, &["build", "--workspace", "--bin", "gridwalk"]))?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let folder = target.join("ci-pictures");
+    fs::create_dir_all(&folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    let mut scenes: Vec<PathBuf> =
+        fs::read_dir(root.join("scenes")).context("scenes/: cannot be listed")?.flatten().map(|e| e.path()).collect();
+    scenes.retain(|scene| scene.join("scene.toml").is_file());
+    scenes.sort();
+    scenes.truncate(4);
+    if scenes.is_empty() {
+        bail!("scenes/: no scene");
+    }
+    let gridwalk = target.join("debug/gridwalk");
+    let mut first: Vec<Vec<u8>> = Vec::new();
+    for environment in settings() {
+        for (index, scene) in scenes.iter().enumerate() {
+            let picture = render(&gridwalk, scene, &folder, &environment)?;
+            match first.get(index) {
+                None => first.push(picture),
+                Some(first) if *first == picture => {}
+                Some(_) => bail!("{}: with {} the picture is another one", scene.display(), describe(&environment)),
+            }
+        }
+    }
+    eprintln!("{} scenes, equal in all settings", scenes.len());
+    Ok(Outcome::Passed)
+}
+
+fn render(gridwalk: &Path, scene: &Path, folder: &Path, environment: &Environment) -> Result<Vec<u8>> {
+    let settings: Vec<&str> = environment.iter().map(|(_, value)| value.as_str()).collect();
+    let name = scene.file_name().unwrap_or_default().to_string_lossy();
+    let picture = folder.join(format!("{name}-{}.png", settings.join("-")));
+    let mut command = Command::new(gridwalk);
+    command.arg("render").arg(scene).args(["--quiet", "--size", "200x150", "-o"]).arg(&picture);
+    process::run(command.envs(environment.iter().map(|(name, value)| (name, value))))?;
+    fs::read(&picture).with_context(|| format!("{}: cannot be read", picture.display()))
+}
