@@ -2,6 +2,8 @@
 #![forbid(unsafe_code)]
 
 pub mod kernel;
+pub mod layout;
 pub mod ray;
 
+pub use layout::Report;
 pub use ray::{Hit, MISS, Ray, UNFINISHED};

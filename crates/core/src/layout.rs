@@ -1,0 +1,194 @@
+//! Structures in device memory that kernels and host share. Offsets are asserted against the kernels by the generated tables of crate
+//! `gridwalk`. Private to gridwalk but for [`Report`]: the rest may change with every version.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Passes of the radix sort that a plan may record: 32 key bits at 4 bits a digit.
+pub const MAX_PASSES: usize = 8;
+
+/// [`Report::overflow`]: pairs were dropped; [`Report::pair_total`] is the capacity that would have sufficed, unless saturated.
+pub const OVERFLOW_PAIRS: u32 = 1;
+/// [`Report::overflow`]: the resolution was lowered to fit the capacity of cells.
+pub const OVERFLOW_CELLS: u32 = 2;
+
+/// Head of a grid in device memory; in the grid's frame, which is the input's times `scale`.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GridHeader {
+    /// Padded minimum of the scene box.
+    pub box_min: [f32; 3],
+    /// Power of two that brings the largest |coordinate| into [1, 2).
+    pub scale: f32,
+    /// Padded maximum of the scene box.
+    pub box_max: [f32; 3],
+    /// 2^-20 of the largest |coordinate|.
+    pub pad: f32,
+    /// Size of a cell; the last boundary is at or beyond `box_max`.
+    pub cell_size: [f32; 3],
+    /// 1 / `scale`.
+    pub inverse_scale: f32,
+    /// 1 / `cell_size`, rounded.
+    pub inverse_cell_size: [f32; 3],
+    /// Product of `resolution`.
+    pub cell_count: u32,
+    /// Cells along each axis.
+    pub resolution: [u32; 3],
+    /// Triangles of the build, dropped ones included.
+    pub triangle_count: u32,
+    /// Device address of the cell ranges (low word first).
+    pub cells: [u32; 2],
+    /// Device address of the references.
+    pub references: [u32; 2],
+    /// Device address of the triangles.
+    pub triangles: [u32; 2],
+    /// Zero.
+    pub reserved: [u32; 2],
+}
+
+/// Numbers that later steps of a build take from earlier ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct BuildState {
+    /// Triangles of the build.
+    pub triangle_count: u32,
+    /// `triangle_count` + 1.
+    pub offset_count: u32,
+    /// Cells in all triangles' boxes, saturating.
+    pub pair_total: u32,
+    /// `pair_total`, at most the capacity.
+    pub pair_count: u32,
+    /// Bits of the largest key.
+    pub key_bits: u32,
+    /// Digits in use.
+    pub pass_count: u32,
+    /// Entries of the sort's digit table.
+    pub table_count: u32,
+    /// [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`].
+    pub overflow: u32,
+}
+
+/// Arguments of the build's indirect dispatches; each a `VkDispatchIndirectCommand` and a word of padding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct DispatchArguments {
+    /// Of `clear_cells`.
+    pub clear_cells: [u32; 4],
+    /// Of `overlap_emit`.
+    pub emit: [u32; 4],
+    /// Of `sort_histogram` and `sort_scatter`, for each pass.
+    pub sort: [[u32; 4]; MAX_PASSES],
+    /// Of the reduce and the downsweep of the digit table's scan, for each pass.
+    pub table_scan: [[u32; 4]; MAX_PASSES],
+    /// Of that scan's spine, for each pass.
+    pub table_spine: [[u32; 4]; MAX_PASSES],
+    /// Of `cell_ranges`.
+    pub cell_ranges: [u32; 4],
+    /// Of `report_reduce`.
+    pub report: [u32; 4],
+}
+
+/// The box of some triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Bounds {
+    /// Minimum; infinite without a triangle.
+    pub low: [f32; 3],
+    /// Triangles left out.
+    pub dropped: u32,
+    /// Maximum; minus infinity without a triangle.
+    pub high: [f32; 3],
+    /// Zero.
+    pub reserved: u32,
+}
+
+impl Bounds {
+    /// The box of no triangle.
+    pub const EMPTY: Bounds = Bounds { low: [f32::INFINITY; 3], dropped: 0, high: [f32::NEG_INFINITY; 3], reserved: 0 };
+}
+
+/// What a build tells its caller: written to the report region by every build, to be read after the device has executed it.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Report {
+    /// Triangles given.
+    pub triangles: u32,
+    /// Triangles left out: a vertex is not finite, or an index lies outside of the positions.
+    pub dropped: u32,
+    /// Cells of the grid.
+    pub cells: u32,
+    /// Cells with at least one triangle.
+    pub cells_in_use: u32,
+    /// Cells along each axis.
+    pub resolution: [u32; 3],
+    /// Triangles in the fullest cell.
+    pub longest_list: u32,
+    /// Pairs (cell, triangle) that the grid lists.
+    pub pairs: u32,
+    /// Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more.
+    pub pair_total: u32,
+    /// 0, or bits [`OVERFLOW_PAIRS`] and [`OVERFLOW_CELLS`].
+    pub overflow: u32,
+    /// Bits of the sort's largest key.
+    pub key_bits: u32,
+    /// Minimum of the scene box, in input coordinates.
+    pub box_min: [f32; 3],
+    /// Density k that was used: what was asked for, or less if the cells did not fit.
+    pub density: f32,
+    /// Maximum of the scene box, in input coordinates.
+    pub box_max: [f32; 3],
+    /// Zero.
+    pub reserved: u32,
+}
+
+impl Report {
+    /// Whether pairs were dropped for lack of capacity: the grid is sound but misses triangles, so grow and build again.
+    pub const fn pairs_overflowed(&self) -> bool {
+        self.overflow & OVERFLOW_PAIRS != 0
+    }
+
+    /// Whether the resolution was lowered for lack of capacity: the grid is complete, only coarser than asked for.
+    pub const fn cells_overflowed(&self) -> bool {
+        self.overflow & OVERFLOW_CELLS != 0
+    }
+
+    /// The capacity of pairs that the build needed; `None` if only a lower density helps.
+    pub const fn needed_pairs(&self) -> Option<u32> {
+        if self.pair_total == u32::MAX { None } else { Some(self.pair_total) }
+    }
+}
+
+/// Head of a trace's scratch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TraceState {
+    /// `VkDispatchIndirectCommand` of the next trace, and padding.
+    pub arguments: [u32; 4],
+    /// Rays of the trace.
+    pub ray_count: u32,
+    /// 1 if a walk was given up.
+    pub unfinished: u32,
+    /// Zero.
+    pub reserved: [u32; 2],
+}
+
+/// Where a walk was given up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct WalkState {
+    /// 1 if the walk is to be continued.
+    pub given_up: u32,
+    /// Cell id.
+    pub cell: u32,
+    /// Next entry of the cell's list.
+    pub reference: u32,
+    /// Exit of the cell.
+    pub exit: f32,
+    /// Best hit so far, in the moved frame.
+    pub best_s: f32,
+    /// Its barycentrics.
+    pub best_u: f32,
+    /// Its barycentrics.
+    pub best_v: f32,
+    /// Its triangle.
+    pub best_triangle: u32,
+}

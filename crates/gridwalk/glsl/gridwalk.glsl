@@ -1,0 +1,429 @@
+// Made by `cargo tool shaders` from glsl/shared/gridwalk.glsl and its includes: edit those.
+// gridwalk in your own shader: include this file, pass the address of a built grid (as a uvec2, or as a GridwalkGrid in push constants or
+// a buffer), and trace. It declares no binding, uses no shared memory, no barrier and no subgroup operation, and may be called in
+// divergent code.
+//
+//   #extension GL_EXT_buffer_reference : require
+//   #extension GL_EXT_buffer_reference_uvec2 : require
+//   #include "gridwalk.glsl"
+//   Hit hit = gridwalk_closest_hit(GridwalkGrid(grid_address), Ray(origin, t_min, direction, t_max));
+//   if (gridwalk_is_hit(hit)) { ... }
+//
+// Candidates, for an alpha test or the like: each is closer than what has been committed so far.
+//
+//   GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+//   while (gridwalk_next(candidates)) {
+//       if (opaque(candidates.hit)) { gridwalk_commit(candidates); }
+//   }
+//   Hit hit = gridwalk_committed(candidates);
+//
+// A walk that needs more than GRIDWALK_TURNS turns (cells and triangles) ends as GRIDWALK_UNFINISHED. Public are the types Ray and Hit,
+// GridwalkGrid as an opaque address, the constants GRIDWALK_* and the functions gridwalk_*; everything else may change.
+#ifndef GRIDWALK_GLSL
+#define GRIDWALK_GLSL
+
+// The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), in the moved frame.
+//
+// The integer cell is the truth: distances to boundaries are computed from it and never accumulated. A step moves along one axis. A cell
+// is entered where its predecessor was left, and exits never decrease, so for every s between a cell's entry and its exit the point of
+// the ray lies within pad / 2 of the cell: each hit with s <= exit has been found when the walk leaves a cell.
+#ifndef WALK_GLSL
+#define WALK_GLSL
+
+// A ray brought into the grid's frame, and the watertight ray-triangle test (Woop, Benthin and Wald 2013) there.
+#ifndef INTERSECT_GLSL
+#define INTERSECT_GLSL
+
+// The grid as data. Everything from the header on lives in the grid's frame: input coordinates times `scale`, a power of two chosen so
+// that the largest |coordinate| lies in [1, 2). The product is exact, and no threshold below depends on the unit of the scene.
+#ifndef GRID_GLSL
+#define GRID_GLSL
+
+// Rays and hits as they lie in device memory. Host twins: gridwalk_core::Ray and gridwalk_core::Hit.
+#ifndef GRIDWALK_TYPES_GLSL
+#define GRIDWALK_TYPES_GLSL
+
+// Points origin + t * direction, t in [t_min, t_max]; any length of direction but zero.
+struct Ray {
+    vec3 origin;
+    float t_min;
+    vec3 direction;
+    float t_max;
+};
+
+// The point (1 - u - v) a + u b + v c of a triangle, at distance t.
+struct Hit {
+    float t;
+    float u;
+    float v;
+    uint triangle;
+};
+
+const uint GRIDWALK_MISS = 0xFFFFFFFFu;
+const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
+// No constant expression in GLSL, hence a macro.
+#define GRIDWALK_INFINITY uintBitsToFloat(0x7F800000u)
+
+#endif
+
+// [begin, end) in the references; {0, 0} for an empty cell.
+layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint triangle[]; };
+// Three vertices a triangle, the fourth component unused; all zero for a dropped triangle, which no ray hits.
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
+
+// Host twin: gridwalk_core::layout::GridHeader.
+struct GridHeader {
+    vec3 box_min; // padded
+    float scale;
+    vec3 box_max; // padded
+    float pad;
+    vec3 cell_size;
+    float inverse_scale;
+    vec3 inverse_cell_size;
+    uint cell_count;
+    uvec3 resolution;
+    uint triangle_count;
+    uvec2 cells;
+    uvec2 references;
+    uvec2 triangles;
+    uvec2 reserved;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };
+
+// Lower boundary of cell i, upper boundary of cell i - 1. The one function that both the build and the walk use: the walk is watertight
+// only if they agree bit for bit.
+vec3 boundary(vec3 box_min, vec3 cell_size, vec3 i) {
+    vec3 offset = i * cell_size;
+    return box_min + offset;
+}
+
+uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
+
+#endif
+
+// Points origin + s * direction. The direction is the ray's, times a power of two that brings its largest component into [1, 2); a
+// component below 2^-40 of the largest is zero. The origin is where the ray enters the padded box, or its own start inside.
+struct MovedRay {
+    vec3 origin;
+    vec3 direction;
+    float s_min;
+    float s_max;
+    // t = (start + s) * t_of_s.x * t_of_s.y: two powers of two, each representable where their product may not be.
+    float start;
+    vec2 t_of_s;
+    // The shear of the triangle test and the axis that it maps to z.
+    vec3 shear;
+    bool z_is_x;
+    bool z_is_y;
+    bool valid;
+};
+
+const float NEGLIGIBLE_COMPONENT = 9.094947017729282e-13; // 2^-40
+const float SLAB_TOLERANCE = 9.5367431640625e-07; // 2^-20, above the rounding of a slab's distance by 2.5 ulp divisions
+
+// 2^e for -126 <= e <= 127.
+float power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
+
+// floor(log2(x)) for normal x > 0, clamped so that the power of two and its inverse are normal numbers.
+int clamped_exponent(float x) { return clamp(int((floatBitsToUint(x) >> 23) & 255u) - 127, -126, 126); }
+
+bool is_finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
+
+vec3 permute(MovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
+
+MovedRay move_ray(Ray ray, GridHeader grid) {
+    MovedRay moved;
+    vec3 magnitude = abs(ray.direction);
+    float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
+    moved.valid = is_finite(ray.origin) && is_finite(ray.direction) && largest > 0.0 && !isnan(ray.t_min) && !isnan(ray.t_max);
+    if (!moved.valid) {
+        return moved;
+    }
+    int exponent = clamped_exponent(largest);
+    float shrink = power_of_two(-exponent);
+    float grow = power_of_two(exponent);
+    bvec3 zero = lessThan(magnitude, vec3(largest * NEGLIGIBLE_COMPONENT));
+    vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
+                          zero.z ? 0.0 : ray.direction.z * shrink);
+    vec3 origin = ray.origin * grid.scale;
+    moved.t_of_s = vec2(grid.inverse_scale, shrink);
+    float first = ray.t_min * grow * grid.scale;
+    float last = ray.t_max * grow * grid.scale;
+
+    // The interval of the box, and the tests of the axes along which the ray does not move.
+    float entry = -GRIDWALK_INFINITY;
+    float leave = GRIDWALK_INFINITY;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0) {
+            moved.valid = moved.valid && origin[axis] >= grid.box_min[axis] && origin[axis] <= grid.box_max[axis];
+        } else {
+            float inverse = 1.0 / direction[axis];
+            bool up = direction[axis] > 0.0;
+            float near = ((up ? grid.box_min[axis] : grid.box_max[axis]) - origin[axis]) * inverse;
+            float far = ((up ? grid.box_max[axis] : grid.box_min[axis]) - origin[axis]) * inverse;
+            entry = max(entry, near);
+            leave = min(leave, far);
+        }
+    }
+    leave += abs(leave) * SLAB_TOLERANCE;
+    moved.start = max(entry, first);
+    // No >, which a NaN would pass.
+    moved.valid = moved.valid && moved.start <= leave && moved.start <= last;
+    vec3 travelled = moved.start * direction;
+    // From far away the entry is rounded by more than the padding: the walk needs an origin inside of the box.
+    moved.origin = min(max(origin + travelled, grid.box_min), grid.box_max);
+    moved.s_min = first - moved.start;
+    moved.s_max = last - moved.start;
+
+    magnitude = abs(direction);
+    moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
+    moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
+    moved.direction = direction;
+    vec3 permuted = permute(moved, direction);
+    float inverse_z = 1.0 / permuted.z;
+    moved.shear = vec3(permuted.x * inverse_z, permuted.y * inverse_z, inverse_z);
+    return moved;
+}
+
+// t of a hit at s, inside of the ray's interval in spite of rounding.
+float hit_distance(MovedRay moved, Ray ray, float s) {
+    float t = (moved.start + s) * moved.t_of_s.x * moved.t_of_s.y;
+    return min(max(t, ray.t_min), ray.t_max);
+}
+
+// s of a t, as hit_distance has it.
+float distance_to_s(MovedRay moved, float t) {
+    return t / moved.t_of_s.y / moved.t_of_s.x - moved.start;
+}
+
+// Whether the ray's line meets the triangle; s, u and v are set if so. Edge functions of a shared edge differ in sign alone, because
+// each is a difference of two products and nothing is contracted; zero counts as inside, so no ray passes between two neighbours.
+// A triangle seen exactly edge-on is not hit. Both windings are.
+bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, out float u, out float v) {
+    vec3 a = permute(ray, v0 - ray.origin);
+    vec3 b = permute(ray, v1 - ray.origin);
+    vec3 c = permute(ray, v2 - ray.origin);
+    float ax = a.x - ray.shear.x * a.z;
+    float ay = a.y - ray.shear.y * a.z;
+    float bx = b.x - ray.shear.x * b.z;
+    float by = b.y - ray.shear.y * b.z;
+    float cx = c.x - ray.shear.x * c.z;
+    float cy = c.y - ray.shear.y * c.z;
+    float edge_u = cx * by - cy * bx;
+    float edge_v = ax * cy - ay * cx;
+    float edge_w = bx * ay - by * ax;
+    bool negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
+    bool positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
+    float determinant = edge_u + edge_v + edge_w;
+    if ((negative && positive) || determinant == 0.0) {
+        return false;
+    }
+    float inverse = 1.0 / determinant;
+    float along = edge_u * a.z + edge_v * b.z + edge_w * c.z;
+    s = along * ray.shear.z * inverse;
+    u = edge_v * inverse;
+    v = edge_w * inverse;
+    return true;
+}
+
+#endif
+
+struct Walk {
+    MovedRay ray;
+    vec3 inverse; // of the direction; 0 where that is 0
+    vec3 never; // added to the distances: beyond any where the direction is 0
+    vec3 ahead; // 1 where the boundary ahead is the cell's upper one
+    ivec3 stride; // cell ids along each axis, with the sign of the direction
+    ivec3 cell;
+    int id;
+    vec3 boundaries; // s of the boundary ahead along each axis
+    float exit;
+    uint reference; // next in the cell's list
+    uint list_end;
+    float best_s;
+    float best_u;
+    float best_v;
+    uint best_triangle; // GRIDWALK_MISS: none so far
+};
+
+const float BEYOND = 3.0e38;
+
+void walk_measure(inout Walk walk, GridHeader grid) {
+    vec3 edges = boundary(grid.box_min, grid.cell_size, vec3(walk.cell) + walk.ahead);
+    walk.boundaries = (edges - walk.ray.origin) * walk.inverse + walk.never;
+    walk.exit = max(walk.exit, min(walk.boundaries.x, min(walk.boundaries.y, walk.boundaries.z)));
+}
+
+void walk_enter(inout Walk walk, GridHeader grid) {
+    walk_measure(walk, grid);
+    uvec2 range = Cells(grid.cells).range[walk.id];
+    walk.reference = range.x;
+    walk.list_end = range.y;
+}
+
+// At the ray's first cell. Only for a valid ray and a grid of at least one cell.
+Walk walk_begin(GridHeader grid, MovedRay ray) {
+    Walk walk;
+    walk.ray = ray;
+    bvec3 still = equal(ray.direction, vec3(0.0));
+    bvec3 up = greaterThan(ray.direction, vec3(0.0));
+    walk.inverse = vec3(still.x ? 0.0 : 1.0 / ray.direction.x, still.y ? 0.0 : 1.0 / ray.direction.y, still.z ? 0.0 : 1.0 / ray.direction.z);
+    walk.never = vec3(still.x ? BEYOND : 0.0, still.y ? BEYOND : 0.0, still.z ? BEYOND : 0.0);
+    walk.ahead = vec3(up);
+    ivec3 extent = ivec3(grid.resolution);
+    ivec3 strides = ivec3(1, extent.x, extent.x * extent.y);
+    walk.stride = ivec3(up.x ? strides.x : -strides.x, up.y ? strides.y : -strides.y, up.z ? strides.z : -strides.z);
+    vec3 last = vec3(grid.resolution) - vec3(1.0);
+    vec3 first = min(max(floor((ray.origin - grid.box_min) * grid.inverse_cell_size), vec3(0.0)), last);
+    walk.cell = ivec3(first);
+    walk.id = walk.cell.x + walk.cell.y * strides.y + walk.cell.z * strides.z;
+    walk.exit = 0.0;
+    walk.best_s = ray.s_max;
+    walk.best_u = 0.0;
+    walk.best_v = 0.0;
+    walk.best_triangle = GRIDWALK_MISS;
+    walk_enter(walk, grid);
+    return walk;
+}
+
+// Into the next cell; false outside of the grid.
+bool walk_step(inout Walk walk, GridHeader grid) {
+    bool x = walk.boundaries.x <= walk.boundaries.y && walk.boundaries.x <= walk.boundaries.z;
+    bool y = !x && walk.boundaries.y <= walk.boundaries.z;
+    bool z = !x && !y;
+    int towards = (x ? walk.stride.x : (y ? walk.stride.y : walk.stride.z)) > 0 ? 1 : -1;
+    walk.cell += ivec3(x ? towards : 0, y ? towards : 0, z ? towards : 0);
+    walk.id += x ? walk.stride.x : (y ? walk.stride.y : walk.stride.z);
+    int coordinate = x ? walk.cell.x : (y ? walk.cell.y : walk.cell.z);
+    uint count = x ? grid.resolution.x : (y ? grid.resolution.y : grid.resolution.z);
+    if (uint(coordinate) >= count) {
+        return false;
+    }
+    walk_enter(walk, grid);
+    return true;
+}
+
+// Whether no cell ahead can hold a hit that is closer than the best, or as close.
+bool walk_is_over(Walk walk) { return walk.best_s <= walk.exit; }
+
+// Whether a hit is in the ray's interval and closer than the best; of equal ones the lower index wins.
+bool walk_improves(Walk walk, float s, uint triangle) {
+    return s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle));
+}
+
+bool walk_test(Walk walk, GridHeader grid, uint triangle, out float s, out float u, out float v) {
+    Triangles triangles = Triangles(grid.triangles);
+    vec3 v0 = triangles.vertex[3u * triangle].xyz;
+    vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
+    vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
+    return intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && walk_improves(walk, s, triangle);
+}
+
+void walk_commit(inout Walk walk, float s, float u, float v, uint triangle) {
+    walk.best_s = s;
+    walk.best_u = u;
+    walk.best_v = v;
+    walk.best_triangle = triangle;
+}
+
+#endif
+
+// lavapipe ends every loop of an invocation, silently, after 65,535 turns.
+#ifndef GRIDWALK_TURNS
+#define GRIDWALK_TURNS 32768u
+#endif
+
+struct GridwalkCandidates {
+    Hit hit; // the candidate: set by gridwalk_next
+    Ray ray;
+    GridHeader grid;
+    Walk walk;
+    float s; // of the candidate
+    uint turns;
+    bool searching;
+    bool unfinished;
+};
+
+bool gridwalk_is_hit(Hit hit) { return hit.triangle < GRIDWALK_UNFINISHED; }
+
+GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
+    GridwalkCandidates candidates;
+    candidates.hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
+    candidates.ray = ray;
+    candidates.grid = grid.header;
+    candidates.s = 0.0;
+    candidates.turns = 0u;
+    candidates.unfinished = false;
+    MovedRay moved = move_ray(ray, candidates.grid);
+    candidates.searching = moved.valid;
+    candidates.walk.best_triangle = GRIDWALK_MISS;
+    if (moved.valid) {
+        candidates.walk = walk_begin(candidates.grid, moved);
+    }
+    return candidates;
+}
+
+// Finds the next candidate; false when there is none, and from then on.
+bool gridwalk_next(inout GridwalkCandidates candidates) {
+    while (candidates.searching) {
+        if (candidates.turns >= GRIDWALK_TURNS) {
+            candidates.unfinished = true;
+            break;
+        }
+        candidates.turns += 1u;
+        if (candidates.walk.reference < candidates.walk.list_end) {
+            uint triangle = References(candidates.grid.references).triangle[candidates.walk.reference];
+            candidates.walk.reference += 1u;
+            float u;
+            float v;
+            if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)) {
+                candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
+                return true;
+            }
+        } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {
+            break;
+        }
+    }
+    candidates.searching = false;
+    return false;
+}
+
+// Makes the candidate the closest hit: later ones are closer still.
+void gridwalk_commit(inout GridwalkCandidates candidates) {
+    walk_commit(candidates.walk, candidates.s, candidates.hit.u, candidates.hit.v, candidates.hit.triangle);
+}
+
+// Ends the search: gridwalk_next returns false.
+void gridwalk_terminate(inout GridwalkCandidates candidates) { candidates.searching = false; }
+
+Hit gridwalk_committed(GridwalkCandidates candidates) {
+    if (candidates.unfinished) {
+        return Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_UNFINISHED);
+    }
+    Walk walk = candidates.walk;
+    if (walk.best_triangle == GRIDWALK_MISS) {
+        return Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
+    }
+    return Hit(hit_distance(walk.ray, candidates.ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
+}
+
+Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) {
+    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+    while (gridwalk_next(candidates)) {
+        gridwalk_commit(candidates);
+    }
+    return gridwalk_committed(candidates);
+}
+
+// The first hit that is found: its triangle is GRIDWALK_MISS if there is none.
+Hit gridwalk_any_hit(GridwalkGrid grid, Ray ray) {
+    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+    if (gridwalk_next(candidates)) {
+        gridwalk_commit(candidates);
+    }
+    return gridwalk_committed(candidates);
+}
+
+#endif

@@ -1,0 +1,823 @@
+//! The kernels of this crate: SPIR-V and what reflection found in it. Made by `cargo tool shaders`; edit the GLSL instead.
+
+use gridwalk_core::kernel::{Access, Kernel, Kind};
+
+/// SPIR-V as words: files hold it as little-endian bytes.
+const fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
+    let (chunks, rest) = bytes.as_chunks::<4>();
+    assert!(chunks.len() == N && rest.is_empty());
+    let mut words = [0; N];
+    let mut i = 0;
+    while i < N {
+        words[i] = u32::from_le_bytes(chunks[i]);
+        i += 1;
+    }
+    words
+}
+
+macro_rules! spirv {
+    ($path:literal) => {{
+        const BYTES: &[u8] = include_bytes!($path);
+        const WORDS: [u32; BYTES.len() / 4] = words(BYTES);
+        &WORDS
+    }};
+}
+
+/// Kernel `any_hit`, from `glsl/map/any_hit.comp`.
+pub static ANY_HIT: Kernel = Kernel {
+    name: "any_hit",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/any_hit.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[
+        ("grid", Access::Read),
+        ("rays", Access::Read),
+        ("occluded", Access::Write),
+        ("state", Access::ReadWrite),
+        ("walks", Access::ReadWrite),
+    ],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0)],
+};
+
+/// Kernel `bounds_reduce`, from `glsl/cooperative/bounds_reduce.comp`.
+pub static BOUNDS_REDUCE: Kernel = Kernel {
+    name: "bounds_reduce",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/bounds_reduce.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 32,
+    accesses: &[("positions", Access::Read), ("indices", Access::Read), ("partials", Access::Write)],
+    spec_constants: &[(1, "TRIANGLES_EACH", 8)],
+};
+
+/// Kernel `bounds_spine`, from `glsl/cooperative/bounds_spine.comp`.
+pub static BOUNDS_SPINE: Kernel = Kernel {
+    name: "bounds_spine",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/bounds_spine.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("partials", Access::Read), ("scene", Access::Write)],
+    spec_constants: &[],
+};
+
+/// Kernel `brute_force`, from `glsl/map/brute_force.comp`.
+pub static BRUTE_FORCE: Kernel = Kernel {
+    name: "brute_force",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/brute_force.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[("grid", Access::Read), ("rays", Access::Read), ("hits", Access::Write), ("walks", Access::ReadWrite)],
+    spec_constants: &[],
+};
+
+/// Kernel `cell_ranges`, from `glsl/map/cell_ranges.comp`.
+pub static CELL_RANGES: Kernel = Kernel {
+    name: "cell_ranges",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/cell_ranges.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("keys", Access::Read),
+        ("cells", Access::Write),
+        ("report", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
+/// Kernel `clear_cells`, from `glsl/map/clear_cells.comp`.
+pub static CLEAR_CELLS: Kernel = Kernel {
+    name: "clear_cells",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/clear_cells.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 16,
+    accesses: &[("grid", Access::Read), ("cells", Access::Write)],
+    spec_constants: &[],
+};
+
+/// Kernel `closest_candidate`, from `glsl/map/closest_candidate.comp`.
+pub static CLOSEST_CANDIDATE: Kernel = Kernel {
+    name: "closest_candidate",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/closest_candidate.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 32,
+    accesses: &[("grid", Access::Read), ("rays", Access::Read), ("hits", Access::Write)],
+    spec_constants: &[],
+};
+
+/// Kernel `closest_hit`, from `glsl/map/closest_hit.comp`.
+pub static CLOSEST_HIT: Kernel = Kernel {
+    name: "closest_hit",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/closest_hit.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[
+        ("grid", Access::Read),
+        ("rays", Access::Read),
+        ("hits", Access::ReadWrite),
+        ("state", Access::ReadWrite),
+        ("walks", Access::ReadWrite),
+        ("counters", Access::ReadWrite),
+    ],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0)],
+};
+
+/// Kernel `configure`, from `glsl/map/configure.comp`.
+pub static CONFIGURE: Kernel = Kernel {
+    name: "configure",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/configure.spv"),
+    local_size: [1, 1, 1],
+    local_size_ids: [None, None, None],
+    push_constant_size: 96,
+    accesses: &[
+        ("scene", Access::Read),
+        ("grid", Access::Write),
+        ("state", Access::Write),
+        ("arguments", Access::Write),
+        ("report", Access::Write),
+        ("cells", Access::Read),
+        ("references", Access::Read),
+        ("triangles", Access::Read),
+    ],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "REPORT_TILE", 4096)],
+};
+
+/// Kernel `overlap_count`, from `glsl/map/overlap_count.comp`.
+pub static OVERLAP_COUNT: Kernel = Kernel {
+    name: "overlap_count",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/overlap_count.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[
+        ("grid", Access::Read),
+        ("positions", Access::Read),
+        ("indices", Access::Read),
+        ("triangles", Access::Write),
+        ("counts", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
+/// Kernel `overlap_emit`, from `glsl/map/overlap_emit.comp`.
+pub static OVERLAP_EMIT: Kernel = Kernel {
+    name: "overlap_emit",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/overlap_emit.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 64,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("offsets", Access::Read),
+        ("triangles", Access::Read),
+        ("keys_a", Access::Write),
+        ("keys_b", Access::Write),
+        ("values_a", Access::Write),
+        ("values_b", Access::Write),
+    ],
+    spec_constants: &[(1, "PAIRS_EACH", 16), (2, "EXACT", 0)],
+};
+
+/// Kernel `pair_args`, from `glsl/map/pair_args.comp`.
+pub static PAIR_ARGS: Kernel = Kernel {
+    name: "pair_args",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/pair_args.spv"),
+    local_size: [1, 1, 1],
+    local_size_ids: [None, None, None],
+    push_constant_size: 40,
+    accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::Write), ("report", Access::ReadWrite)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "SORT_TILE", 4096), (4, "SCAN_TILE", 4096), (5, "PAIRS_EACH", 16)],
+};
+
+/// Kernel `report_reduce`, from `glsl/cooperative/report_reduce.comp`.
+pub static REPORT_REDUCE: Kernel = Kernel {
+    name: "report_reduce",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/report_reduce.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("grid", Access::Read), ("cells", Access::Read), ("partials", Access::Write)],
+    spec_constants: &[(1, "CELLS_EACH", 16)],
+};
+
+/// Kernel `report_spine`, from `glsl/cooperative/report_spine.comp`.
+pub static REPORT_SPINE: Kernel = Kernel {
+    name: "report_spine",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/report_spine.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("grid", Access::Read), ("partials", Access::Read), ("report", Access::Write)],
+    spec_constants: &[(1, "REPORT_TILE", 4096)],
+};
+
+/// Kernel `scan_downsweep`, from `glsl/cooperative/scan_downsweep.comp`.
+pub static SCAN_DOWNSWEEP: Kernel = Kernel {
+    name: "scan_downsweep",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/scan_downsweep.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 32,
+    accesses: &[("state", Access::Read), ("partials", Access::Read), ("values", Access::ReadWrite)],
+    spec_constants: &[(1, "ITEMS_EACH", 16)],
+};
+
+/// Kernel `scan_reduce`, from `glsl/cooperative/scan_reduce.comp`.
+pub static SCAN_REDUCE: Kernel = Kernel {
+    name: "scan_reduce",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/scan_reduce.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 32,
+    accesses: &[("state", Access::Read), ("values", Access::Read), ("partials", Access::Write)],
+    spec_constants: &[(1, "ITEMS_EACH", 16)],
+};
+
+/// Kernel `scan_spine`, from `glsl/cooperative/scan_spine.comp`.
+pub static SCAN_SPINE: Kernel = Kernel {
+    name: "scan_spine",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/scan_spine.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("state", Access::Read), ("partials", Access::ReadWrite)],
+    spec_constants: &[(1, "ITEMS_EACH", 16), (2, "SCAN_TILE", 4096)],
+};
+
+/// Kernel `sort_histogram`, from `glsl/cooperative/sort_histogram.comp`.
+pub static SORT_HISTOGRAM: Kernel = Kernel {
+    name: "sort_histogram",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/sort_histogram.spv"),
+    local_size: [8, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[("state", Access::Read), ("keys_a", Access::Read), ("keys_b", Access::Read), ("table", Access::Write)],
+    spec_constants: &[(1, "SORT_BITS", 8), (2, "KEYS_EACH", 512)],
+};
+
+/// Kernel `sort_scatter`, from `glsl/cooperative/sort_scatter.comp`.
+pub static SORT_SCATTER: Kernel = Kernel {
+    name: "sort_scatter",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/sort_scatter.spv"),
+    local_size: [8, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 56,
+    accesses: &[
+        ("state", Access::Read),
+        ("keys_a", Access::ReadWrite),
+        ("keys_b", Access::ReadWrite),
+        ("values_a", Access::ReadWrite),
+        ("values_b", Access::ReadWrite),
+        ("table", Access::Read),
+    ],
+    spec_constants: &[(1, "SORT_BITS", 8), (2, "KEYS_EACH", 512)],
+};
+
+/// Kernel `trace_args`, from `glsl/map/trace_args.comp`.
+pub static TRACE_ARGS: Kernel = Kernel {
+    name: "trace_args",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/trace_args.spv"),
+    local_size: [1, 1, 1],
+    local_size_ids: [None, None, None],
+    push_constant_size: 24,
+    accesses: &[("state", Access::Write), ("count", Access::Read)],
+    spec_constants: &[(1, "MAP_SIZE", 64)],
+};
+
+/// Kernel `trace_continue_args`, from `glsl/map/trace_continue_args.comp`.
+pub static TRACE_CONTINUE_ARGS: Kernel = Kernel {
+    name: "trace_continue_args",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/trace_continue_args.spv"),
+    local_size: [1, 1, 1],
+    local_size_ids: [None, None, None],
+    push_constant_size: 8,
+    accesses: &[("state", Access::ReadWrite)],
+    spec_constants: &[(1, "MAP_SIZE", 64)],
+};
+
+/// Every kernel of this crate, in order of name.
+pub static ALL: &[&Kernel] = &[
+    &ANY_HIT,
+    &BOUNDS_REDUCE,
+    &BOUNDS_SPINE,
+    &BRUTE_FORCE,
+    &CELL_RANGES,
+    &CLEAR_CELLS,
+    &CLOSEST_CANDIDATE,
+    &CLOSEST_HIT,
+    &CONFIGURE,
+    &OVERLAP_COUNT,
+    &OVERLAP_EMIT,
+    &PAIR_ARGS,
+    &REPORT_REDUCE,
+    &REPORT_SPINE,
+    &SCAN_DOWNSWEEP,
+    &SCAN_REDUCE,
+    &SCAN_SPINE,
+    &SORT_HISTOGRAM,
+    &SORT_SCATTER,
+    &TRACE_ARGS,
+    &TRACE_CONTINUE_ARGS,
+];
+
+/// Bytes of a field, found by a function that takes it.
+const fn size<T, F>(_: fn(&T) -> &F) -> usize {
+    size_of::<F>()
+}
+
+// The host's structures lie in memory as the kernels read them.
+const _: () = {
+    use crate::push::AnyHit as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, occluded) == 16);
+    assert!(size(|host: &Host| &host.occluded) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 24);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, walks) == 32);
+    assert!(size(|host: &Host| &host.walks) == 8);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use gridwalk_core::layout::Bounds as Host;
+    assert!(core::mem::offset_of!(Host, low) == 0);
+    assert!(size(|host: &Host| &host.low) == 12);
+    assert!(core::mem::offset_of!(Host, dropped) == 12);
+    assert!(size(|host: &Host| &host.dropped) == 4);
+    assert!(core::mem::offset_of!(Host, high) == 16);
+    assert!(size(|host: &Host| &host.high) == 12);
+    assert!(core::mem::offset_of!(Host, reserved) == 28);
+    assert!(size(|host: &Host| &host.reserved) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use crate::push::BoundsReduce as Host;
+    assert!(core::mem::offset_of!(Host, positions) == 0);
+    assert!(size(|host: &Host| &host.positions) == 8);
+    assert!(core::mem::offset_of!(Host, indices) == 8);
+    assert!(size(|host: &Host| &host.indices) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 16);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 24);
+    assert!(size(|host: &Host| &host.vertex_count) == 4);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 28);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use crate::push::BoundsSpine as Host;
+    assert!(core::mem::offset_of!(Host, partials) == 0);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, scene) == 8);
+    assert!(size(|host: &Host| &host.scene) == 8);
+    assert!(core::mem::offset_of!(Host, partial_count) == 16);
+    assert!(size(|host: &Host| &host.partial_count) == 4);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::BruteForce as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, hits) == 16);
+    assert!(size(|host: &Host| &host.hits) == 8);
+    assert!(core::mem::offset_of!(Host, walks) == 24);
+    assert!(size(|host: &Host| &host.walks) == 8);
+    assert!(core::mem::offset_of!(Host, ray_count) == 32);
+    assert!(size(|host: &Host| &host.ray_count) == 4);
+    assert!(core::mem::offset_of!(Host, first) == 36);
+    assert!(size(|host: &Host| &host.first) == 4);
+    assert!(core::mem::offset_of!(Host, end) == 40);
+    assert!(size(|host: &Host| &host.end) == 4);
+    assert!(core::mem::offset_of!(Host, last) == 44);
+    assert!(size(|host: &Host| &host.last) == 4);
+    assert!(size_of::<Host>() == 48);
+};
+const _: () = {
+    use gridwalk_core::layout::BuildState as Host;
+    assert!(core::mem::offset_of!(Host, triangle_count) == 0);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(core::mem::offset_of!(Host, offset_count) == 4);
+    assert!(size(|host: &Host| &host.offset_count) == 4);
+    assert!(core::mem::offset_of!(Host, pair_total) == 8);
+    assert!(size(|host: &Host| &host.pair_total) == 4);
+    assert!(core::mem::offset_of!(Host, pair_count) == 12);
+    assert!(size(|host: &Host| &host.pair_count) == 4);
+    assert!(core::mem::offset_of!(Host, key_bits) == 16);
+    assert!(size(|host: &Host| &host.key_bits) == 4);
+    assert!(core::mem::offset_of!(Host, pass_count) == 20);
+    assert!(size(|host: &Host| &host.pass_count) == 4);
+    assert!(core::mem::offset_of!(Host, table_count) == 24);
+    assert!(size(|host: &Host| &host.table_count) == 4);
+    assert!(core::mem::offset_of!(Host, overflow) == 28);
+    assert!(size(|host: &Host| &host.overflow) == 4);
+};
+const _: () = {
+    use crate::push::CellRanges as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, keys) == 16);
+    assert!(size(|host: &Host| &host.keys) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 24);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(core::mem::offset_of!(Host, report) == 32);
+    assert!(size(|host: &Host| &host.report) == 8);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use crate::push::ClearCells as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 8);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(size_of::<Host>() == 16);
+};
+const _: () = {
+    use crate::push::ClosestCandidate as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, hits) == 16);
+    assert!(size(|host: &Host| &host.hits) == 8);
+    assert!(core::mem::offset_of!(Host, ray_count) == 24);
+    assert!(size(|host: &Host| &host.ray_count) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use crate::push::ClosestHit as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, hits) == 16);
+    assert!(size(|host: &Host| &host.hits) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 24);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, walks) == 32);
+    assert!(size(|host: &Host| &host.walks) == 8);
+    assert!(core::mem::offset_of!(Host, counters) == 40);
+    assert!(size(|host: &Host| &host.counters) == 8);
+    assert!(size_of::<Host>() == 48);
+};
+const _: () = {
+    use crate::push::Configure as Host;
+    assert!(core::mem::offset_of!(Host, scene) == 0);
+    assert!(size(|host: &Host| &host.scene) == 8);
+    assert!(core::mem::offset_of!(Host, grid) == 8);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 16);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, arguments) == 24);
+    assert!(size(|host: &Host| &host.arguments) == 8);
+    assert!(core::mem::offset_of!(Host, report) == 32);
+    assert!(size(|host: &Host| &host.report) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 40);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(core::mem::offset_of!(Host, references) == 48);
+    assert!(size(|host: &Host| &host.references) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 56);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 64);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(core::mem::offset_of!(Host, cell_capacity) == 68);
+    assert!(size(|host: &Host| &host.cell_capacity) == 4);
+    assert!(core::mem::offset_of!(Host, density) == 72);
+    assert!(size(|host: &Host| &host.density) == 4);
+    assert!(core::mem::offset_of!(Host, fixed_x) == 76);
+    assert!(size(|host: &Host| &host.fixed_x) == 4);
+    assert!(core::mem::offset_of!(Host, fixed_y) == 80);
+    assert!(size(|host: &Host| &host.fixed_y) == 4);
+    assert!(core::mem::offset_of!(Host, fixed_z) == 84);
+    assert!(size(|host: &Host| &host.fixed_z) == 4);
+    assert!(core::mem::offset_of!(Host, exact) == 88);
+    assert!(size(|host: &Host| &host.exact) == 4);
+    assert!(size_of::<Host>() == 96);
+};
+const _: () = {
+    use gridwalk_core::layout::DispatchArguments as Host;
+    assert!(core::mem::offset_of!(Host, clear_cells) == 0);
+    assert!(size(|host: &Host| &host.clear_cells) == 16);
+    assert!(core::mem::offset_of!(Host, emit) == 16);
+    assert!(size(|host: &Host| &host.emit) == 16);
+    assert!(core::mem::offset_of!(Host, sort) == 32);
+    assert!(size(|host: &Host| &host.sort) == 128);
+    assert!(core::mem::offset_of!(Host, table_scan) == 160);
+    assert!(size(|host: &Host| &host.table_scan) == 128);
+    assert!(core::mem::offset_of!(Host, table_spine) == 288);
+    assert!(size(|host: &Host| &host.table_spine) == 128);
+    assert!(core::mem::offset_of!(Host, cell_ranges) == 416);
+    assert!(size(|host: &Host| &host.cell_ranges) == 16);
+    assert!(core::mem::offset_of!(Host, report) == 432);
+    assert!(size(|host: &Host| &host.report) == 16);
+};
+const _: () = {
+    use gridwalk_core::layout::GridHeader as Host;
+    assert!(core::mem::offset_of!(Host, box_min) == 0);
+    assert!(size(|host: &Host| &host.box_min) == 12);
+    assert!(core::mem::offset_of!(Host, scale) == 12);
+    assert!(size(|host: &Host| &host.scale) == 4);
+    assert!(core::mem::offset_of!(Host, box_max) == 16);
+    assert!(size(|host: &Host| &host.box_max) == 12);
+    assert!(core::mem::offset_of!(Host, pad) == 28);
+    assert!(size(|host: &Host| &host.pad) == 4);
+    assert!(core::mem::offset_of!(Host, cell_size) == 32);
+    assert!(size(|host: &Host| &host.cell_size) == 12);
+    assert!(core::mem::offset_of!(Host, inverse_scale) == 44);
+    assert!(size(|host: &Host| &host.inverse_scale) == 4);
+    assert!(core::mem::offset_of!(Host, inverse_cell_size) == 48);
+    assert!(size(|host: &Host| &host.inverse_cell_size) == 12);
+    assert!(core::mem::offset_of!(Host, cell_count) == 60);
+    assert!(size(|host: &Host| &host.cell_count) == 4);
+    assert!(core::mem::offset_of!(Host, resolution) == 64);
+    assert!(size(|host: &Host| &host.resolution) == 12);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 76);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(core::mem::offset_of!(Host, cells) == 80);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(core::mem::offset_of!(Host, references) == 88);
+    assert!(size(|host: &Host| &host.references) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 96);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, reserved) == 104);
+    assert!(size(|host: &Host| &host.reserved) == 8);
+};
+const _: () = {
+    use gridwalk_core::Hit as Host;
+    assert!(core::mem::offset_of!(Host, t) == 0);
+    assert!(size(|host: &Host| &host.t) == 4);
+    assert!(core::mem::offset_of!(Host, u) == 4);
+    assert!(size(|host: &Host| &host.u) == 4);
+    assert!(core::mem::offset_of!(Host, v) == 8);
+    assert!(size(|host: &Host| &host.v) == 4);
+    assert!(core::mem::offset_of!(Host, triangle) == 12);
+    assert!(size(|host: &Host| &host.triangle) == 4);
+    assert!(size_of::<Host>() == 16);
+};
+const _: () = {
+    use crate::push::OverlapCount as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, positions) == 8);
+    assert!(size(|host: &Host| &host.positions) == 8);
+    assert!(core::mem::offset_of!(Host, indices) == 16);
+    assert!(size(|host: &Host| &host.indices) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 24);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, counts) == 32);
+    assert!(size(|host: &Host| &host.counts) == 8);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 40);
+    assert!(size(|host: &Host| &host.vertex_count) == 4);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 44);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(size_of::<Host>() == 48);
+};
+const _: () = {
+    use crate::push::OverlapEmit as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 16);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 24);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, keys_a) == 32);
+    assert!(size(|host: &Host| &host.keys_a) == 8);
+    assert!(core::mem::offset_of!(Host, keys_b) == 40);
+    assert!(size(|host: &Host| &host.keys_b) == 8);
+    assert!(core::mem::offset_of!(Host, values_a) == 48);
+    assert!(size(|host: &Host| &host.values_a) == 8);
+    assert!(core::mem::offset_of!(Host, values_b) == 56);
+    assert!(size(|host: &Host| &host.values_b) == 8);
+    assert!(size_of::<Host>() == 64);
+};
+const _: () = {
+    use crate::push::PairArgs as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 8);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, arguments) == 16);
+    assert!(size(|host: &Host| &host.arguments) == 8);
+    assert!(core::mem::offset_of!(Host, report) == 24);
+    assert!(size(|host: &Host| &host.report) == 8);
+    assert!(core::mem::offset_of!(Host, pair_capacity) == 32);
+    assert!(size(|host: &Host| &host.pair_capacity) == 4);
+    assert!(core::mem::offset_of!(Host, pass_capacity) == 36);
+    assert!(size(|host: &Host| &host.pass_capacity) == 4);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use gridwalk_core::Ray as Host;
+    assert!(core::mem::offset_of!(Host, origin) == 0);
+    assert!(size(|host: &Host| &host.origin) == 12);
+    assert!(core::mem::offset_of!(Host, t_min) == 12);
+    assert!(size(|host: &Host| &host.t_min) == 4);
+    assert!(core::mem::offset_of!(Host, direction) == 16);
+    assert!(size(|host: &Host| &host.direction) == 12);
+    assert!(core::mem::offset_of!(Host, t_max) == 28);
+    assert!(size(|host: &Host| &host.t_max) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use gridwalk_core::layout::Report as Host;
+    assert!(core::mem::offset_of!(Host, triangles) == 0);
+    assert!(size(|host: &Host| &host.triangles) == 4);
+    assert!(core::mem::offset_of!(Host, dropped) == 4);
+    assert!(size(|host: &Host| &host.dropped) == 4);
+    assert!(core::mem::offset_of!(Host, cells) == 8);
+    assert!(size(|host: &Host| &host.cells) == 4);
+    assert!(core::mem::offset_of!(Host, cells_in_use) == 12);
+    assert!(size(|host: &Host| &host.cells_in_use) == 4);
+    assert!(core::mem::offset_of!(Host, resolution) == 16);
+    assert!(size(|host: &Host| &host.resolution) == 12);
+    assert!(core::mem::offset_of!(Host, longest_list) == 28);
+    assert!(size(|host: &Host| &host.longest_list) == 4);
+    assert!(core::mem::offset_of!(Host, pairs) == 32);
+    assert!(size(|host: &Host| &host.pairs) == 4);
+    assert!(core::mem::offset_of!(Host, pair_total) == 36);
+    assert!(size(|host: &Host| &host.pair_total) == 4);
+    assert!(core::mem::offset_of!(Host, overflow) == 40);
+    assert!(size(|host: &Host| &host.overflow) == 4);
+    assert!(core::mem::offset_of!(Host, key_bits) == 44);
+    assert!(size(|host: &Host| &host.key_bits) == 4);
+    assert!(core::mem::offset_of!(Host, box_min) == 48);
+    assert!(size(|host: &Host| &host.box_min) == 12);
+    assert!(core::mem::offset_of!(Host, density) == 60);
+    assert!(size(|host: &Host| &host.density) == 4);
+    assert!(core::mem::offset_of!(Host, box_max) == 64);
+    assert!(size(|host: &Host| &host.box_max) == 12);
+    assert!(core::mem::offset_of!(Host, reserved) == 76);
+    assert!(size(|host: &Host| &host.reserved) == 4);
+};
+const _: () = {
+    use crate::push::ReportReduce as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 8);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 16);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::ReportSpine as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 8);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, report) == 16);
+    assert!(size(|host: &Host| &host.report) == 8);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::ScanDownsweep as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 8);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, values) == 16);
+    assert!(size(|host: &Host| &host.values) == 8);
+    assert!(core::mem::offset_of!(Host, which) == 24);
+    assert!(size(|host: &Host| &host.which) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use crate::push::ScanReduce as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, values) == 8);
+    assert!(size(|host: &Host| &host.values) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 16);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, which) == 24);
+    assert!(size(|host: &Host| &host.which) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use crate::push::ScanSpine as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 8);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, which) == 16);
+    assert!(size(|host: &Host| &host.which) == 4);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::SortHistogram as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, keys_a) == 8);
+    assert!(size(|host: &Host| &host.keys_a) == 8);
+    assert!(core::mem::offset_of!(Host, keys_b) == 16);
+    assert!(size(|host: &Host| &host.keys_b) == 8);
+    assert!(core::mem::offset_of!(Host, table) == 24);
+    assert!(size(|host: &Host| &host.table) == 8);
+    assert!(core::mem::offset_of!(Host, pass) == 32);
+    assert!(size(|host: &Host| &host.pass) == 4);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use crate::push::SortScatter as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, keys_a) == 8);
+    assert!(size(|host: &Host| &host.keys_a) == 8);
+    assert!(core::mem::offset_of!(Host, keys_b) == 16);
+    assert!(size(|host: &Host| &host.keys_b) == 8);
+    assert!(core::mem::offset_of!(Host, values_a) == 24);
+    assert!(size(|host: &Host| &host.values_a) == 8);
+    assert!(core::mem::offset_of!(Host, values_b) == 32);
+    assert!(size(|host: &Host| &host.values_b) == 8);
+    assert!(core::mem::offset_of!(Host, table) == 40);
+    assert!(size(|host: &Host| &host.table) == 8);
+    assert!(core::mem::offset_of!(Host, pass) == 48);
+    assert!(size(|host: &Host| &host.pass) == 4);
+    assert!(size_of::<Host>() == 56);
+};
+const _: () = {
+    use crate::push::TraceArgs as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, count) == 8);
+    assert!(size(|host: &Host| &host.count) == 8);
+    assert!(core::mem::offset_of!(Host, max_rays) == 16);
+    assert!(size(|host: &Host| &host.max_rays) == 4);
+    assert!(core::mem::offset_of!(Host, indirect) == 20);
+    assert!(size(|host: &Host| &host.indirect) == 4);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::TraceContinueArgs as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(size_of::<Host>() == 8);
+};
+const _: () = {
+    use gridwalk_core::layout::TraceState as Host;
+    assert!(core::mem::offset_of!(Host, arguments) == 0);
+    assert!(size(|host: &Host| &host.arguments) == 16);
+    assert!(core::mem::offset_of!(Host, ray_count) == 16);
+    assert!(size(|host: &Host| &host.ray_count) == 4);
+    assert!(core::mem::offset_of!(Host, unfinished) == 20);
+    assert!(size(|host: &Host| &host.unfinished) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 24);
+    assert!(size(|host: &Host| &host.reserved) == 8);
+};
+const _: () = {
+    use gridwalk_core::layout::WalkState as Host;
+    assert!(core::mem::offset_of!(Host, given_up) == 0);
+    assert!(size(|host: &Host| &host.given_up) == 4);
+    assert!(core::mem::offset_of!(Host, cell) == 4);
+    assert!(size(|host: &Host| &host.cell) == 4);
+    assert!(core::mem::offset_of!(Host, reference) == 8);
+    assert!(size(|host: &Host| &host.reference) == 4);
+    assert!(core::mem::offset_of!(Host, exit) == 12);
+    assert!(size(|host: &Host| &host.exit) == 4);
+    assert!(core::mem::offset_of!(Host, best_s) == 16);
+    assert!(size(|host: &Host| &host.best_s) == 4);
+    assert!(core::mem::offset_of!(Host, best_u) == 20);
+    assert!(size(|host: &Host| &host.best_u) == 4);
+    assert!(core::mem::offset_of!(Host, best_v) == 24);
+    assert!(size(|host: &Host| &host.best_v) == 4);
+    assert!(core::mem::offset_of!(Host, best_triangle) == 28);
+    assert!(size(|host: &Host| &host.best_triangle) == 4);
+    assert!(size_of::<Host>() == 32);
+};

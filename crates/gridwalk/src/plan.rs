@@ -1,0 +1,485 @@
+//! Builds and traces as data: lists of kernels and barriers that are recorded from top to bottom.
+
+use bytemuck::Pod;
+use gridwalk_core::kernel::Kernel;
+use gridwalk_core::layout::{DispatchArguments, MAX_PASSES};
+use std::mem::offset_of;
+
+use crate::kernels::*;
+use crate::push;
+use crate::shape::{Shape, split_workgroups};
+use crate::sizes::{Capacity, pass_capacity};
+
+/// Memory that the kernels of a plan share: each kernel's accesses to it come from the kernel's own qualifiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u64)]
+#[allow(missing_docs, reason = "the names are those of the kernels' push constants")]
+pub enum Buffer {
+    Unused,
+    Positions,
+    Indices,
+    Header,
+    Cells,
+    References,
+    Triangles,
+    Report,
+    State,
+    Arguments,
+    SceneBounds,
+    BoundsPartials,
+    Offsets,
+    ScanPartials,
+    KeysA,
+    KeysB,
+    ValuesA,
+    Table,
+    Occupancy,
+    Rays,
+    Hits,
+    RayCount,
+    TraceState,
+    Walks,
+    Counters,
+}
+
+impl Buffer {
+    /// All of them, in order of their tokens.
+    pub const ALL: [Buffer; 25] = [
+        Buffer::Unused,
+        Buffer::Positions,
+        Buffer::Indices,
+        Buffer::Header,
+        Buffer::Cells,
+        Buffer::References,
+        Buffer::Triangles,
+        Buffer::Report,
+        Buffer::State,
+        Buffer::Arguments,
+        Buffer::SceneBounds,
+        Buffer::BoundsPartials,
+        Buffer::Offsets,
+        Buffer::ScanPartials,
+        Buffer::KeysA,
+        Buffer::KeysB,
+        Buffer::ValuesA,
+        Buffer::Table,
+        Buffer::Occupancy,
+        Buffer::Rays,
+        Buffer::Hits,
+        Buffer::RayCount,
+        Buffer::TraceState,
+        Buffer::Walks,
+        Buffer::Counters,
+    ];
+
+    const fn token(self) -> u64 {
+        self as u64
+    }
+}
+
+/// The number of workgroups of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dispatch {
+    /// Known when recording.
+    Direct([u32; 3]),
+    /// A `VkDispatchIndirectCommand` at a byte offset into a buffer.
+    Indirect(Buffer, u64),
+}
+
+/// Push constants are at most this long on every device.
+pub const MAX_PUSH: usize = 128;
+
+/// One launch of a kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// What runs.
+    pub kernel: &'static Kernel,
+    /// Specialization that differs between launches of one kernel: bit i sets the kernel's i-th boolean constant.
+    pub variant: u32,
+    /// How many workgroups.
+    pub dispatch: Dispatch,
+    push: [u8; MAX_PUSH],
+}
+
+impl Step {
+    fn new<P: Pod>(kernel: &'static Kernel, dispatch: Dispatch, push: P) -> Step {
+        let mut bytes = [0; MAX_PUSH];
+        let source = bytemuck::bytes_of(&push);
+        bytes[..source.len()].copy_from_slice(source);
+        Step { kernel, variant: 0, dispatch, push: bytes }
+    }
+
+    fn variant(self, variant: u32) -> Step {
+        Step { variant, ..self }
+    }
+
+    /// The buffer behind the kernel's i-th access.
+    pub fn buffer(&self, access: usize) -> Buffer {
+        let mut token = [0; 8];
+        token.copy_from_slice(&self.push[8 * access..8 * access + 8]);
+        Buffer::ALL[u64::from_ne_bytes(token) as usize]
+    }
+
+    /// The push constants with every buffer replaced by its address.
+    pub(crate) fn resolve(&self, address: impl Fn(Buffer) -> u64) -> [u8; MAX_PUSH] {
+        let mut push = self.push;
+        for access in 0..self.kernel.accesses.len() {
+            push[8 * access..8 * access + 8].copy_from_slice(&address(self.buffer(access)).to_ne_bytes());
+        }
+        push
+    }
+}
+
+/// A global memory barrier between the kernels of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Barrier {
+    /// Compute shaders see what compute shaders wrote.
+    Shader,
+    /// Likewise, and indirect dispatches too.
+    ShaderAndIndirect,
+}
+
+/// An entry of a plan.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "a plan is a flat array without allocation")]
+pub enum Item {
+    /// A launch.
+    Step(Step),
+    /// A barrier between what stands before and what stands after it.
+    Barrier(Barrier),
+}
+
+const MAX_ITEMS: usize = 32 + 10 * MAX_PASSES;
+
+/// A list of steps and barriers, without allocation.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    items: [Item; MAX_ITEMS],
+    len: usize,
+}
+
+impl Plan {
+    fn new() -> Plan {
+        Plan { items: [Item::Barrier(Barrier::Shader); MAX_ITEMS], len: 0 }
+    }
+
+    fn push(&mut self, item: Item) {
+        // The bound holds for every capacity: a pass adds ten items, everything else fewer than 32.
+        debug_assert!(self.len < MAX_ITEMS);
+        if let Some(slot) = self.items.get_mut(self.len) {
+            *slot = item;
+            self.len += 1;
+        }
+    }
+
+    fn step(&mut self, step: Step) {
+        self.push(Item::Step(step));
+    }
+
+    fn barrier(&mut self, barrier: Barrier) {
+        self.push(Item::Barrier(barrier));
+    }
+
+    /// The entries, in order.
+    pub fn items(&self) -> &[Item] {
+        &self.items[..self.len]
+    }
+
+    /// The launches, in order.
+    pub fn steps(&self) -> impl Iterator<Item = &Step> {
+        self.items().iter().filter_map(|item| match item {
+            Item::Step(step) => Some(step),
+            Item::Barrier(_) => None,
+        })
+    }
+}
+
+/// What of a geometry the plan depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct BuildInputs {
+    /// Triangles.
+    pub triangle_count: u32,
+    /// Vertices.
+    pub vertex_count: u32,
+    /// Density k of Equation 3-1.
+    pub density: f32,
+    /// A fixed resolution instead.
+    pub resolution: Option<[u32; 3]>,
+    /// Whether cells are listed by exact overlap.
+    pub exact: bool,
+}
+
+const SCAN_OFFSETS: u32 = 0;
+const SCAN_TABLE: u32 = 1;
+
+/// Bit of [`Step::variant`] of `overlap_emit`.
+pub(crate) const EXACT: u32 = 1;
+
+fn argument(offset: usize) -> Dispatch {
+    Dispatch::Indirect(Buffer::Arguments, offset as u64)
+}
+
+fn map_groups(elements: u32, shape: &Shape) -> Dispatch {
+    Dispatch::Direct(split_workgroups(elements.div_ceil(shape.map_size)))
+}
+
+fn scan(plan: &mut Plan, which: u32, values: Buffer, groups: Dispatch, spine: Dispatch) {
+    let (values, partials, state) = (values.token(), Buffer::ScanPartials.token(), Buffer::State.token());
+    plan.step(Step::new(&SCAN_REDUCE, groups, push::ScanReduce { state, values, partials, which, padding: 0 }));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(&SCAN_SPINE, spine, push::ScanSpine { state, partials, which, padding: 0 }));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(&SCAN_DOWNSWEEP, groups, push::ScanDownsweep { state, partials, values, which, padding: 0 }));
+}
+
+/// The rebuild, from positions and indices to cell ranges (thesis sections 3.1 and 3.4).
+pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> Plan {
+    use Buffer::*;
+    let BuildInputs { triangle_count, vertex_count, .. } = *inputs;
+    let [fixed_x, fixed_y, fixed_z] = inputs.resolution.unwrap_or([0; 3]);
+    let grid = Header.token();
+    let passes = pass_capacity(capacity, shape);
+    let mut plan = Plan::new();
+
+    let partial_count = shape.bounds_tiles(triangle_count);
+    plan.step(Step::new(
+        &BOUNDS_REDUCE,
+        Dispatch::Direct(split_workgroups(partial_count)),
+        push::BoundsReduce {
+            positions: Positions.token(),
+            indices: Indices.token(),
+            partials: BoundsPartials.token(),
+            vertex_count,
+            triangle_count,
+        },
+    ));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(
+        &BOUNDS_SPINE,
+        Dispatch::Direct([1, 1, 1]),
+        push::BoundsSpine { partials: BoundsPartials.token(), scene: SceneBounds.token(), partial_count, padding: 0 },
+    ));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(
+        &CONFIGURE,
+        Dispatch::Direct([1, 1, 1]),
+        push::Configure {
+            scene: SceneBounds.token(),
+            grid,
+            state: State.token(),
+            arguments: Arguments.token(),
+            report: Report.token(),
+            cells: Cells.token(),
+            references: References.token(),
+            triangles: Triangles.token(),
+            triangle_count,
+            cell_capacity: capacity.cells,
+            density: inputs.density,
+            fixed_x,
+            fixed_y,
+            fixed_z,
+            exact: inputs.exact.into(),
+            padding: 0,
+        },
+    ));
+    plan.barrier(Barrier::ShaderAndIndirect);
+    plan.step(Step::new(
+        &CLEAR_CELLS,
+        argument(offset_of!(DispatchArguments, clear_cells)),
+        push::ClearCells { grid, cells: Cells.token() },
+    ));
+    plan.step(Step::new(
+        &OVERLAP_COUNT,
+        map_groups(triangle_count + 1, shape),
+        push::OverlapCount {
+            grid,
+            positions: Positions.token(),
+            indices: Indices.token(),
+            triangles: Triangles.token(),
+            counts: Offsets.token(),
+            vertex_count,
+            triangle_count,
+        },
+    ));
+    plan.barrier(Barrier::Shader);
+    let tiles = Dispatch::Direct(split_workgroups((triangle_count + 1).div_ceil(shape.scan_tile())));
+    scan(&mut plan, SCAN_OFFSETS, Offsets, tiles, Dispatch::Direct([1, 1, 1]));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(
+        &PAIR_ARGS,
+        Dispatch::Direct([1, 1, 1]),
+        push::PairArgs {
+            state: State.token(),
+            offsets: Offsets.token(),
+            arguments: Arguments.token(),
+            report: Report.token(),
+            pair_capacity: capacity.pairs,
+            pass_capacity: passes,
+        },
+    ));
+    plan.barrier(Barrier::ShaderAndIndirect);
+    plan.step(
+        Step::new(
+            &OVERLAP_EMIT,
+            argument(offset_of!(DispatchArguments, emit)),
+            push::OverlapEmit {
+                grid,
+                state: State.token(),
+                offsets: Offsets.token(),
+                triangles: Triangles.token(),
+                keys_a: KeysA.token(),
+                keys_b: KeysB.token(),
+                values_a: ValuesA.token(),
+                values_b: References.token(),
+            },
+        )
+        .variant(if inputs.exact { EXACT } else { 0 }),
+    );
+    for pass in 0..passes {
+        let slot = 16 * pass as usize;
+        let sort = argument(offset_of!(DispatchArguments, sort) + slot);
+        plan.barrier(Barrier::Shader);
+        plan.step(Step::new(
+            &SORT_HISTOGRAM,
+            sort,
+            push::SortHistogram {
+                state: State.token(),
+                keys_a: KeysA.token(),
+                keys_b: KeysB.token(),
+                table: Table.token(),
+                pass,
+                padding: 0,
+            },
+        ));
+        plan.barrier(Barrier::Shader);
+        let table_scan = argument(offset_of!(DispatchArguments, table_scan) + slot);
+        let table_spine = argument(offset_of!(DispatchArguments, table_spine) + slot);
+        scan(&mut plan, SCAN_TABLE, Table, table_scan, table_spine);
+        plan.barrier(Barrier::Shader);
+        plan.step(Step::new(
+            &SORT_SCATTER,
+            sort,
+            push::SortScatter {
+                state: State.token(),
+                keys_a: KeysA.token(),
+                keys_b: KeysB.token(),
+                values_a: ValuesA.token(),
+                values_b: References.token(),
+                table: Table.token(),
+                pass,
+                padding: 0,
+            },
+        ));
+    }
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(
+        &CELL_RANGES,
+        argument(offset_of!(DispatchArguments, cell_ranges)),
+        push::CellRanges { grid, state: State.token(), keys: KeysB.token(), cells: Cells.token(), report: Report.token() },
+    ));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(
+        &REPORT_REDUCE,
+        argument(offset_of!(DispatchArguments, report)),
+        push::ReportReduce { grid, cells: Cells.token(), partials: Occupancy.token() },
+    ));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(
+        &REPORT_SPINE,
+        Dispatch::Direct([1, 1, 1]),
+        push::ReportSpine { grid, partials: Occupancy.token(), report: Report.token() },
+    ));
+    plan
+}
+
+/// Times that a trace goes on with walks that ran out of their budget before they are reported.
+pub const CONTINUATIONS: u32 = 3;
+
+/// Bits of [`Step::variant`] of the trace kernels.
+pub(crate) const CONTINUE: u32 = 1;
+pub(crate) const LAST: u32 = 2;
+pub(crate) const RESUME: u32 = 4;
+pub(crate) const COUNT: u32 = 8;
+
+/// What a trace computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Query {
+    /// A `Hit` a ray.
+    Closest {
+        /// Whether existing hits are to be beaten.
+        resume: bool,
+        /// Whether steps, tests and cells are counted.
+        count: bool,
+    },
+    /// A word a ray: 1 or 0.
+    Any,
+}
+
+/// A trace over a buffer of rays. `max_rays` is the number of rays, or its bound if the number is in memory.
+pub fn trace_plan(query: Query, max_rays: u32, indirect: bool) -> Plan {
+    use Buffer::*;
+    let state = TraceState.token();
+    let mut plan = Plan::new();
+    plan.step(Step::new(
+        &TRACE_ARGS,
+        Dispatch::Direct([1, 1, 1]),
+        push::TraceArgs { state, count: RayCount.token(), max_rays, indirect: indirect.into() },
+    ));
+    for turn in 0..=CONTINUATIONS {
+        if turn > 0 {
+            plan.barrier(Barrier::ShaderAndIndirect);
+            plan.step(Step::new(&TRACE_CONTINUE_ARGS, Dispatch::Direct([1, 1, 1]), push::TraceContinueArgs { state }));
+        }
+        plan.barrier(Barrier::ShaderAndIndirect);
+        let variant = if turn > 0 { CONTINUE } else { 0 } | if turn == CONTINUATIONS { LAST } else { 0 };
+        let dispatch = Dispatch::Indirect(TraceState, offset_of!(gridwalk_core::layout::TraceState, arguments) as u64);
+        let (grid, rays, walks) = (Header.token(), Rays.token(), Walks.token());
+        plan.step(match query {
+            Query::Closest { resume, count } => {
+                let variant = variant | if resume { RESUME } else { 0 } | if count { COUNT } else { 0 };
+                let counters = Counters.token();
+                Step::new(&CLOSEST_HIT, dispatch, push::ClosestHit { grid, rays, hits: Hits.token(), state, walks, counters })
+                    .variant(variant)
+            }
+            Query::Any => Step::new(&ANY_HIT, dispatch, push::AnyHit { grid, rays, occluded: Hits.token(), state, walks }).variant(variant),
+        });
+    }
+    plan
+}
+
+/// Triangles a dispatch of the brute-force oracle; the loop budget of lavapipe allows no more than 65,535.
+pub(crate) const BRUTE_FORCE_TRIANGLES: u32 = 32_768;
+
+/// One range of the brute-force oracle, from triangle `first` on.
+pub(crate) fn brute_force_step(ray_count: u32, triangle_count: u32, first: u32, shape: &Shape) -> Step {
+    let end = triangle_count.min(first + BRUTE_FORCE_TRIANGLES);
+    Step::new(
+        &BRUTE_FORCE,
+        map_groups(ray_count, shape),
+        push::BruteForce {
+            grid: Buffer::Header.token(),
+            rays: Buffer::Rays.token(),
+            hits: Buffer::Hits.token(),
+            walks: Buffer::Walks.token(),
+            ray_count,
+            first,
+            end,
+            last: (end == triangle_count).into(),
+        },
+    )
+}
+
+/// The closest hits through the public include.
+pub(crate) fn candidate_step(ray_count: u32, shape: &Shape) -> Step {
+    Step::new(
+        &CLOSEST_CANDIDATE,
+        map_groups(ray_count, shape),
+        push::ClosestCandidate {
+            grid: Buffer::Header.token(),
+            rays: Buffer::Rays.token(),
+            hits: Buffer::Hits.token(),
+            ray_count,
+            padding: 0,
+        },
+    )
+}

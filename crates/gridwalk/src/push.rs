@@ -1,0 +1,246 @@
+//! Push constants of the kernels; the generated table asserts their layout. An address is a [`crate::plan::Buffer`] in a plan, and becomes
+//! the device address of that buffer when the plan is recorded. Addresses come first, in the order of the kernel's accesses.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Of kernel `bounds_reduce`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct BoundsReduce {
+    pub(crate) positions: u64,
+    pub(crate) indices: u64,
+    pub(crate) partials: u64,
+    pub(crate) vertex_count: u32,
+    pub(crate) triangle_count: u32,
+}
+
+/// Of kernel `bounds_spine`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct BoundsSpine {
+    pub(crate) partials: u64,
+    pub(crate) scene: u64,
+    pub(crate) partial_count: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `report_reduce`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ReportReduce {
+    pub(crate) grid: u64,
+    pub(crate) cells: u64,
+    pub(crate) partials: u64,
+}
+
+/// Of kernel `report_spine`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ReportSpine {
+    pub(crate) grid: u64,
+    pub(crate) partials: u64,
+    pub(crate) report: u64,
+}
+
+/// Of kernel `scan_downsweep`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ScanDownsweep {
+    pub(crate) state: u64,
+    pub(crate) partials: u64,
+    pub(crate) values: u64,
+    pub(crate) which: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `scan_reduce`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ScanReduce {
+    pub(crate) state: u64,
+    pub(crate) values: u64,
+    pub(crate) partials: u64,
+    pub(crate) which: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `scan_spine`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ScanSpine {
+    pub(crate) state: u64,
+    pub(crate) partials: u64,
+    pub(crate) which: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `sort_histogram`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SortHistogram {
+    pub(crate) state: u64,
+    pub(crate) keys_a: u64,
+    pub(crate) keys_b: u64,
+    pub(crate) table: u64,
+    pub(crate) pass: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `sort_scatter`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SortScatter {
+    pub(crate) state: u64,
+    pub(crate) keys_a: u64,
+    pub(crate) keys_b: u64,
+    pub(crate) values_a: u64,
+    pub(crate) values_b: u64,
+    pub(crate) table: u64,
+    pub(crate) pass: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `any_hit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct AnyHit {
+    pub(crate) grid: u64,
+    pub(crate) rays: u64,
+    pub(crate) occluded: u64,
+    pub(crate) state: u64,
+    pub(crate) walks: u64,
+}
+
+/// Of kernel `brute_force`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct BruteForce {
+    pub(crate) grid: u64,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) walks: u64,
+    pub(crate) ray_count: u32,
+    pub(crate) first: u32,
+    pub(crate) end: u32,
+    pub(crate) last: u32,
+}
+
+/// Of kernel `cell_ranges`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CellRanges {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) keys: u64,
+    pub(crate) cells: u64,
+    pub(crate) report: u64,
+}
+
+/// Of kernel `clear_cells`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ClearCells {
+    pub(crate) grid: u64,
+    pub(crate) cells: u64,
+}
+
+/// Of kernel `closest_candidate`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ClosestCandidate {
+    pub(crate) grid: u64,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) ray_count: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `closest_hit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ClosestHit {
+    pub(crate) grid: u64,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) state: u64,
+    pub(crate) walks: u64,
+    pub(crate) counters: u64,
+}
+
+/// Of kernel `configure`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Configure {
+    pub(crate) scene: u64,
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) arguments: u64,
+    pub(crate) report: u64,
+    pub(crate) cells: u64,
+    pub(crate) references: u64,
+    pub(crate) triangles: u64,
+    pub(crate) triangle_count: u32,
+    pub(crate) cell_capacity: u32,
+    pub(crate) density: f32,
+    pub(crate) fixed_x: u32,
+    pub(crate) fixed_y: u32,
+    pub(crate) fixed_z: u32,
+    pub(crate) exact: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `overlap_count`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct OverlapCount {
+    pub(crate) grid: u64,
+    pub(crate) positions: u64,
+    pub(crate) indices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) counts: u64,
+    pub(crate) vertex_count: u32,
+    pub(crate) triangle_count: u32,
+}
+
+/// Of kernel `overlap_emit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct OverlapEmit {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) offsets: u64,
+    pub(crate) triangles: u64,
+    pub(crate) keys_a: u64,
+    pub(crate) keys_b: u64,
+    pub(crate) values_a: u64,
+    pub(crate) values_b: u64,
+}
+
+/// Of kernel `pair_args`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct PairArgs {
+    pub(crate) state: u64,
+    pub(crate) offsets: u64,
+    pub(crate) arguments: u64,
+    pub(crate) report: u64,
+    pub(crate) pair_capacity: u32,
+    pub(crate) pass_capacity: u32,
+}
+
+/// Of kernel `trace_args`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct TraceArgs {
+    pub(crate) state: u64,
+    pub(crate) count: u64,
+    pub(crate) max_rays: u32,
+    pub(crate) indirect: u32,
+}
+
+/// Of kernel `trace_continue_args`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct TraceContinueArgs {
+    pub(crate) state: u64,
+}

@@ -1,0 +1,179 @@
+//! Every byte offset of the library: where the parts of a region lie, and how large regions are.
+
+use ash::vk;
+use gridwalk_core::layout::{Bounds, BuildState, DispatchArguments, GridHeader, MAX_PASSES, Report, TraceState, WalkState};
+
+use crate::error::{Error, Result};
+use crate::shape::Shape;
+
+/// What a build must have room for. Sizes are made from capacities once; builds of any smaller size fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capacity {
+    /// Triangles, at most 2^26.
+    pub triangles: u32,
+    /// Cells of the grid, at most 2^28; a build lowers its density to fit.
+    pub cells: u32,
+    /// Cells in the boxes of all triangles, counted once a triangle, at most 2^28. Pairs beyond are dropped and reported.
+    pub pairs: u32,
+}
+
+/// Most triangles of a grid.
+pub const MAX_TRIANGLES: u32 = 1 << 26;
+/// Most cells of a grid.
+pub const MAX_CELLS: u32 = 1 << 28;
+/// Most pairs of a grid.
+pub const MAX_PAIRS: u32 = 1 << 28;
+/// Most rays of a trace.
+pub const MAX_RAYS: u32 = 1 << 28;
+
+/// Alignment of every region, and of the parts inside. Kernels load 16 bytes at once; a cache line more keeps parts apart.
+pub const REGION_ALIGNMENT: u64 = 64;
+
+/// What a region needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RegionSize {
+    /// Bytes.
+    pub size: u64,
+    /// Alignment of the region's device address, bytes.
+    pub alignment: u64,
+    /// Usage flags of its buffer.
+    pub usage: vk::BufferUsageFlags,
+}
+
+/// What the regions of a build need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BuildSizes {
+    /// The grid itself, triangles included: needed as long as rays are traced.
+    pub grid: RegionSize,
+    /// Needed while a build runs; builds that do not overlap in time may share it.
+    pub scratch: RegionSize,
+    /// A [`Report`], in memory that the host can read if it wants to.
+    pub report: RegionSize,
+    /// Timestamps that a build writes if asked to.
+    pub timestamp_count: u32,
+}
+
+/// A part of a region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    pub(crate) offset: u64,
+    pub(crate) size: u64,
+}
+
+struct Packer(u64);
+
+impl Packer {
+    fn part(&mut self, size: u64) -> Part {
+        let offset = self.0;
+        self.0 = (offset + size).next_multiple_of(REGION_ALIGNMENT);
+        Part { offset, size }
+    }
+}
+
+/// Cells that one invocation of `clear_cells` clears; its memory is rounded up to it.
+pub(crate) const CELLS_EACH: u64 = 8;
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GridLayout {
+    pub(crate) header: Part,
+    pub(crate) cells: Part,
+    pub(crate) references: Part,
+    pub(crate) triangles: Part,
+    pub(crate) size: u64,
+}
+
+impl GridLayout {
+    pub(crate) fn new(capacity: &Capacity) -> GridLayout {
+        let mut packer = Packer(0);
+        GridLayout {
+            header: packer.part(size_of::<GridHeader>() as u64),
+            cells: packer.part(u64::from(capacity.cells.max(1)).next_multiple_of(CELLS_EACH) * 8),
+            references: packer.part(u64::from(capacity.pairs.max(1)) * 4),
+            triangles: packer.part(u64::from(capacity.triangles.max(1)) * 48),
+            size: packer.0,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ScratchLayout {
+    pub(crate) state: Part,
+    pub(crate) arguments: Part,
+    pub(crate) scene_bounds: Part,
+    pub(crate) bounds_partials: Part,
+    pub(crate) offsets: Part,
+    pub(crate) scan_partials: Part,
+    pub(crate) keys_a: Part,
+    pub(crate) keys_b: Part,
+    pub(crate) values_a: Part,
+    pub(crate) table: Part,
+    pub(crate) occupancy: Part,
+    pub(crate) size: u64,
+}
+
+impl ScratchLayout {
+    pub(crate) fn new(capacity: &Capacity, shape: &Shape) -> ScratchLayout {
+        let offsets = u64::from(capacity.triangles) + 1;
+        let table = shape.table_entries(capacity.pairs);
+        let pairs = u64::from(capacity.pairs.max(1));
+        let mut packer = Packer(0);
+        ScratchLayout {
+            state: packer.part(size_of::<BuildState>() as u64),
+            arguments: packer.part(size_of::<DispatchArguments>() as u64),
+            scene_bounds: packer.part(size_of::<Bounds>() as u64),
+            bounds_partials: packer.part(u64::from(shape.bounds_tiles(capacity.triangles)) * size_of::<Bounds>() as u64),
+            offsets: packer.part(offsets * 4),
+            scan_partials: packer.part(offsets.max(table).div_ceil(u64::from(shape.scan_tile())) * 4),
+            keys_a: packer.part(pairs * 4),
+            keys_b: packer.part(pairs * 4),
+            values_a: packer.part(pairs * 4),
+            table: packer.part(table.max(1) * 4),
+            occupancy: packer.part(u64::from(capacity.cells.max(1)).div_ceil(u64::from(shape.report_tile())) * 8),
+            size: packer.0,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TraceLayout {
+    pub(crate) state: Part,
+    pub(crate) walks: Part,
+    pub(crate) size: u64,
+}
+
+impl TraceLayout {
+    pub(crate) fn new(max_rays: u32) -> TraceLayout {
+        let mut packer = Packer(0);
+        TraceLayout {
+            state: packer.part(size_of::<TraceState>() as u64),
+            walks: packer.part(u64::from(max_rays.max(1)) * size_of::<WalkState>() as u64),
+            size: packer.0,
+        }
+    }
+}
+
+/// Passes that a plan records: digits of the largest key that the capacity of cells admits, the sentinel included.
+pub(crate) fn pass_capacity(capacity: &Capacity, shape: &Shape) -> u32 {
+    let key_bits = 32 - capacity.cells.max(1).leading_zeros();
+    key_bits.div_ceil(shape.sort_bits).min(MAX_PASSES as u32)
+}
+
+pub(crate) fn check_capacity(capacity: &Capacity) -> Result<()> {
+    let limits =
+        [("triangles", capacity.triangles, MAX_TRIANGLES), ("cells", capacity.cells, MAX_CELLS), ("pairs", capacity.pairs, MAX_PAIRS)];
+    match limits.into_iter().find(|(_, given, limit)| given > limit) {
+        Some((what, given, limit)) => Err(Error::Capacity { what, given: given.into(), limit: limit.into() }),
+        None => Ok(()),
+    }
+}
+
+pub(crate) fn region_size(region: &'static str, size: u64, limit: u64, usage: vk::BufferUsageFlags) -> Result<RegionSize> {
+    if size > limit {
+        return Err(Error::DeviceLimit { region, needed: size, limit });
+    }
+    let usage = usage | vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+    Ok(RegionSize { size, alignment: REGION_ALIGNMENT, usage })
+}
+
+/// Bytes of a report region.
+pub(crate) const REPORT_SIZE: u64 = size_of::<Report>() as u64;

@@ -1,0 +1,600 @@
+//! The library's face: sizes, and recording of builds and traces.
+
+use ash::vk;
+use gridwalk_core::kernel::Kernel;
+
+use crate::error::{Error, Result};
+use crate::kernels::*;
+use crate::plan::{self, Buffer, BuildInputs, Dispatch, Item, MAX_PUSH, Plan, Query, Step};
+use crate::requirements;
+use crate::shape::Shape;
+use crate::sizes::{
+    self, BuildSizes, Capacity, GridLayout, MAX_RAYS, REGION_ALIGNMENT, REPORT_SIZE, RegionSize, ScratchLayout, TraceLayout,
+};
+use crate::sync::{Access, SHADER, cmd_barrier};
+
+/// The device that a [`Tracer`] records for.
+pub struct DeviceDesc<'a> {
+    /// Instance of the device.
+    pub instance: &'a ash::Instance,
+    /// Physical device of the device.
+    pub physical_device: vk::PhysicalDevice,
+    /// Device with the features of [`requirements`] enabled.
+    pub device: &'a ash::Device,
+    /// Cache for the pipelines, or null.
+    pub pipeline_cache: vk::PipelineCache,
+    /// How kernels are cut; `None` chooses by the kind of device.
+    pub shape: Option<Shape>,
+}
+
+/// A piece of a buffer of the caller's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// The buffer, with usage `SHADER_DEVICE_ADDRESS`.
+    pub buffer: vk::Buffer,
+    /// First byte of the region in the buffer.
+    pub offset: vk::DeviceSize,
+    /// Bytes.
+    pub size: vk::DeviceSize,
+    /// Device address of the region's first byte.
+    pub address: vk::DeviceAddress,
+}
+
+impl Region {
+    /// No memory.
+    pub const NONE: Region = Region { buffer: vk::Buffer::null(), offset: 0, size: 0, address: 0 };
+
+    /// A piece of this region.
+    pub const fn part(&self, offset: vk::DeviceSize, size: vk::DeviceSize) -> Region {
+        Region { buffer: self.buffer, offset: self.offset + offset, size, address: self.address + offset }
+    }
+}
+
+/// Indexed triangles in device memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Geometry {
+    /// Three `f32` a vertex, tightly packed.
+    pub positions: Region,
+    /// Vertices in `positions`; a triangle with an index beyond is dropped.
+    pub vertex_count: u32,
+    /// Three `u32` a triangle, tightly packed.
+    pub indices: Region,
+    /// Triangles in `indices`.
+    pub triangle_count: u32,
+}
+
+/// Which cells list a triangle (thesis Figure 3.2).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Overlap {
+    /// All that its box overlaps: the faster build.
+    #[default]
+    Box,
+    /// Only those that the triangle itself overlaps: fewer tests when tracing, above all with long thin triangles.
+    Exact,
+}
+
+/// Options of a build.
+#[derive(Clone, Copy, Debug)]
+pub struct BuildOptions {
+    /// Density k of Equation 3-1: cells a triangle.
+    pub density: f32,
+    /// Cells along each axis, instead of the density.
+    pub resolution: Option<[u32; 3]>,
+    /// Overlap test.
+    pub overlap: Overlap,
+}
+
+impl BuildOptions {
+    /// Density unless something else is asked for.
+    pub const DEFAULT_DENSITY: f32 = 8.0;
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        BuildOptions { density: Self::DEFAULT_DENSITY, resolution: None, overlap: Overlap::Box }
+    }
+}
+
+/// Where a build or trace writes timestamps: one before its first step and one after each.
+#[derive(Clone, Copy, Debug)]
+pub struct Timestamps {
+    /// Pool of type `TIMESTAMP`.
+    pub pool: vk::QueryPool,
+    /// First of the queries, which the recording resets.
+    pub first_query: u32,
+}
+
+/// Arguments of [`Tracer::cmd_build`].
+#[derive(Clone, Copy, Debug)]
+pub struct BuildInfo {
+    /// What is built.
+    pub geometry: Geometry,
+    /// Where the grid goes.
+    pub grid: Region,
+    /// Memory of the build.
+    pub scratch: Region,
+    /// Where the [`gridwalk_core::Report`] goes.
+    pub report: Region,
+    /// What the regions were sized for.
+    pub capacity: Capacity,
+    /// How it is built.
+    pub options: BuildOptions,
+    /// Times of the steps, if wanted: [`BuildSizes::timestamp_count`] queries.
+    pub timestamps: Option<Timestamps>,
+}
+
+/// How many rays there are.
+#[derive(Clone, Copy, Debug)]
+pub enum RayCount {
+    /// As many.
+    Direct(u32),
+    /// As many as a `u32` in device memory says, at most `max`.
+    Indirect {
+        /// The number, 4 bytes.
+        count: Region,
+        /// Bound of the number; rays beyond are not traced.
+        max: u32,
+    },
+}
+
+impl RayCount {
+    /// The greatest number of rays.
+    pub const fn max(&self) -> u32 {
+        match *self {
+            RayCount::Direct(count) => count,
+            RayCount::Indirect { max, .. } => max,
+        }
+    }
+}
+
+/// Arguments of [`Tracer::cmd_closest_hit`] and [`Tracer::cmd_any_hit`].
+#[derive(Clone, Copy, Debug)]
+pub struct TraceInfo {
+    /// [`gridwalk_core::Ray`]s.
+    pub rays: Region,
+    /// Closest hit: [`gridwalk_core::Hit`]s. Any hit: a `u32` a ray, 1, 0 or [`gridwalk_core::UNFINISHED`].
+    pub hits: Region,
+    /// Number of rays.
+    pub count: RayCount,
+    /// Memory of the trace: [`Tracer::trace_scratch_size`].
+    pub scratch: Region,
+    /// Closest hit only: go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are traced one
+    /// after another.
+    pub resume: bool,
+    /// Closest hit only: where each ray's numbers of steps, triangle tests and cells that were not empty are written, as `uvec4`.
+    pub counters: Option<Region>,
+}
+
+struct Variant {
+    kernel: &'static Kernel,
+    variant: u32,
+    pipeline: vk::Pipeline,
+}
+
+/// Records builds and traces for one device.
+///
+/// Creating it makes all pipelines; after that nothing is created, allocated or waited for. All methods take `&self` and may be called on
+/// several threads at once, as long as each command buffer is used by one.
+pub struct Tracer {
+    device: ash::Device,
+    layout: vk::PipelineLayout,
+    variants: Vec<Variant>,
+    shape: Shape,
+    max_buffer_size: u64,
+}
+
+/// Boolean constants of a kernel that differ between its launches, in order of the bits of a step's variant, and the variants in use.
+fn launch_constants(kernel: &'static Kernel) -> (&'static [&'static str], &'static [u32]) {
+    match kernel.name {
+        "overlap_emit" => (&["EXACT"], &[0, plan::EXACT]),
+        "closest_hit" => (&["CONTINUE", "LAST", "RESUME", "COUNT"], &[0, 1, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15]),
+        "any_hit" => (&["CONTINUE", "LAST"], &[0, 1, 3]),
+        _ => (&[], &[0]),
+    }
+}
+
+impl Tracer {
+    /// What precedes and follows builds in a barrier.
+    pub const BUILD: Access = Access::COMPUTE;
+
+    /// What precedes and follows traces in a barrier.
+    pub const TRACE: Access = Access::COMPUTE;
+
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// [`Error::Unsuitable`] names all that the physical device lacks; [`Error::Vulkan`].
+    ///
+    /// # Safety
+    /// The handles are valid, and of each other. The device has the features of [`requirements`] enabled and outlives the tracer. All work
+    /// that was recorded with the tracer has ended when it is dropped.
+    pub unsafe fn new(desc: &DeviceDesc) -> Result<Tracer> {
+        // SAFETY: the caller's contract.
+        let found = unsafe { requirements::query(desc.instance, desc.physical_device) };
+        if !found.missing.is_empty() {
+            return Err(Error::Unsuitable { missing: found.missing });
+        }
+        let shape = desc.shape.unwrap_or(if found.is_cpu { Shape::CPU } else { Shape::GPU });
+        let device = desc.device.clone();
+        let range = vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(MAX_PUSH as u32);
+        let layout_info = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(std::slice::from_ref(&range));
+        // SAFETY: the caller's contract.
+        let layout = unsafe { device.create_pipeline_layout(&layout_info, None) }.map_err(Error::vulkan("vkCreatePipelineLayout"))?;
+        let mut tracer = Tracer { device, layout, variants: Vec::new(), shape, max_buffer_size: found.max_buffer_size };
+        for &kernel in ALL {
+            // SAFETY: the caller's contract.
+            unsafe { tracer.create_variants(kernel, desc.pipeline_cache)? };
+        }
+        Ok(tracer)
+    }
+
+    /// # Safety
+    /// As for [`Tracer::new`].
+    unsafe fn create_variants(&mut self, kernel: &'static Kernel, cache: vk::PipelineCache) -> Result<()> {
+        let module_info = vk::ShaderModuleCreateInfo::default().code(kernel.spirv);
+        // SAFETY: the SPIR-V is valid (spirv-val runs in the tests) and needs the checked features alone.
+        let module = unsafe { self.device.create_shader_module(&module_info, None) }.map_err(Error::vulkan("vkCreateShaderModule"))?;
+        let (constants, variants) = launch_constants(kernel);
+        let mut result = Ok(());
+        for &variant in variants {
+            let mut entries = Vec::new();
+            let mut data = Vec::<u32>::new();
+            let mut add = |id: u32, value: u32| {
+                entries.push(vk::SpecializationMapEntry { constant_id: id, offset: 4 * data.len() as u32, size: 4 });
+                data.push(value);
+            };
+            if let Some(id) = kernel.local_size_ids[0] {
+                add(id, self.shape.local_size(kernel));
+            }
+            for &(id, name, default) in kernel.spec_constants {
+                let launch = constants.iter().position(|constant| *constant == name).map(|bit| (variant >> bit) & 1);
+                add(id, launch.or_else(|| self.shape.constant(kernel, name)).unwrap_or(default));
+            }
+            let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&data));
+            let stage = vk::PipelineShaderStageCreateInfo::default()
+                .stage(vk::ShaderStageFlags::COMPUTE)
+                .module(module)
+                .name(c"main")
+                .specialization_info(&specialization);
+            let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
+            // SAFETY: as above.
+            match unsafe { self.device.create_compute_pipelines(cache, &[info], None) } {
+                Ok(pipelines) => self.variants.extend(pipelines.into_iter().map(|pipeline| Variant { kernel, variant, pipeline })),
+                Err((_, error)) => {
+                    result = Err(Error::vulkan("vkCreateComputePipelines")(error));
+                    break;
+                }
+            }
+        }
+        // SAFETY: pipelines keep no reference to the module.
+        unsafe { self.device.destroy_shader_module(module, None) };
+        result
+    }
+
+    /// The device that the tracer records for.
+    pub fn device(&self) -> &ash::Device {
+        &self.device
+    }
+
+    /// How kernels are cut into workgroups.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// What the regions of a build need.
+    ///
+    /// # Errors
+    /// [`Error::Capacity`] beyond the library's limits, [`Error::DeviceLimit`] beyond the device's.
+    pub fn build_sizes(&self, capacity: &Capacity) -> Result<BuildSizes> {
+        sizes::check_capacity(capacity)?;
+        let limit = self.max_buffer_size;
+        let grid = GridLayout::new(capacity).size;
+        let scratch = ScratchLayout::new(capacity, &self.shape).size;
+        let none = vk::BufferUsageFlags::empty();
+        let inputs = BuildInputs { triangle_count: 0, vertex_count: 0, density: 1.0, resolution: None, exact: false };
+        Ok(BuildSizes {
+            grid: sizes::region_size("grid", grid, limit, none)?,
+            scratch: sizes::region_size("scratch", scratch, limit, vk::BufferUsageFlags::INDIRECT_BUFFER)?,
+            report: sizes::region_size("report", REPORT_SIZE, limit, none)?,
+            timestamp_count: plan::build_plan(capacity, &inputs, &self.shape).steps().count() as u32 + 1,
+        })
+    }
+
+    /// What the scratch region of a trace needs.
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], [`Error::DeviceLimit`].
+    pub fn trace_scratch_size(&self, max_rays: u32) -> Result<RegionSize> {
+        if max_rays > MAX_RAYS {
+            return Err(Error::Capacity { what: "rays", given: max_rays.into(), limit: MAX_RAYS.into() });
+        }
+        sizes::region_size("trace scratch", TraceLayout::new(max_rays).size, self.max_buffer_size, vk::BufferUsageFlags::INDIRECT_BUFFER)
+    }
+
+    /// The steps of a build, in order of its timestamps: step i runs between timestamps i and i + 1.
+    pub fn build_steps(&self, capacity: &Capacity) -> Vec<&'static Kernel> {
+        let inputs = BuildInputs { triangle_count: 0, vertex_count: 0, density: 1.0, resolution: None, exact: false };
+        plan::build_plan(capacity, &inputs, &self.shape).steps().map(|step| step.kernel).collect()
+    }
+
+    /// Records a build of a grid from nothing.
+    ///
+    /// Put a barrier before it, from whatever wrote the geometry and from earlier uses of the regions to [`Tracer::BUILD`], and one after it,
+    /// from [`Tracer::BUILD`] to [`Tracer::TRACE`] (or to [`Access::HOST_READ`] for the report). The command buffer may be submitted again
+    /// after the vertices changed. The compute pipeline and the push constants that were bound before are lost.
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], [`Error::Region`], [`Error::Option`]; then nothing was recorded.
+    ///
+    /// # Safety
+    /// `cmd` is in the recording state, outside of a render pass, of a queue with compute and of the tracer's device. The regions are of that
+    /// device, do not overlap, and live until the command buffer has been executed; scratch's buffer has usage `INDIRECT_BUFFER`. With
+    /// timestamps: the pool holds enough queries from the first on.
+    pub unsafe fn cmd_build(&self, cmd: vk::CommandBuffer, info: &BuildInfo) -> Result<()> {
+        let BuildInfo { geometry, capacity, options, .. } = info;
+        sizes::check_capacity(capacity)?;
+        if geometry.triangle_count > capacity.triangles {
+            return Err(Error::Capacity { what: "triangles", given: geometry.triangle_count.into(), limit: capacity.triangles.into() });
+        }
+        if !(options.density > 0.0 && options.density.is_finite()) {
+            return Err(Error::Option { option: "density", value: options.density.to_string(), expected: "a finite number above 0" });
+        }
+        if options.resolution.is_some_and(|resolution| resolution.contains(&0)) {
+            return Err(Error::Option {
+                option: "resolution",
+                value: format!("{:?}", options.resolution),
+                expected: "at least one cell along each axis",
+            });
+        }
+        if geometry.vertex_count > 1 << 30 {
+            return Err(Error::Capacity { what: "vertices", given: geometry.vertex_count.into(), limit: 1 << 30 });
+        }
+        let grid = GridLayout::new(capacity);
+        let scratch = ScratchLayout::new(capacity, &self.shape);
+        check_region("grid", &info.grid, grid.size, REGION_ALIGNMENT)?;
+        check_region("scratch", &info.scratch, scratch.size, REGION_ALIGNMENT)?;
+        check_region("report", &info.report, REPORT_SIZE, REGION_ALIGNMENT)?;
+        check_region("positions", &geometry.positions, u64::from(geometry.vertex_count) * 12, 4)?;
+        check_region("indices", &geometry.indices, u64::from(geometry.triangle_count) * 12, 4)?;
+        let inputs = BuildInputs {
+            triangle_count: geometry.triangle_count,
+            vertex_count: geometry.vertex_count,
+            density: options.density,
+            resolution: options.resolution,
+            exact: options.overlap == Overlap::Exact,
+        };
+        let plan = plan::build_plan(capacity, &inputs, &self.shape);
+        let in_grid = |part: sizes::Part| info.grid.part(part.offset, part.size);
+        let in_scratch = |part: sizes::Part| info.scratch.part(part.offset, part.size);
+        let region = |buffer| match buffer {
+            Buffer::Positions => geometry.positions,
+            Buffer::Indices => geometry.indices,
+            Buffer::Report => info.report,
+            Buffer::Header => in_grid(grid.header),
+            Buffer::Cells => in_grid(grid.cells),
+            Buffer::References => in_grid(grid.references),
+            Buffer::Triangles => in_grid(grid.triangles),
+            Buffer::State => in_scratch(scratch.state),
+            Buffer::Arguments => in_scratch(scratch.arguments),
+            Buffer::SceneBounds => in_scratch(scratch.scene_bounds),
+            Buffer::BoundsPartials => in_scratch(scratch.bounds_partials),
+            Buffer::Offsets => in_scratch(scratch.offsets),
+            Buffer::ScanPartials => in_scratch(scratch.scan_partials),
+            Buffer::KeysA => in_scratch(scratch.keys_a),
+            Buffer::KeysB => in_scratch(scratch.keys_b),
+            Buffer::ValuesA => in_scratch(scratch.values_a),
+            Buffer::Table => in_scratch(scratch.table),
+            Buffer::Occupancy => in_scratch(scratch.occupancy),
+            Buffer::Unused | Buffer::Rays | Buffer::Hits | Buffer::RayCount | Buffer::TraceState | Buffer::Walks | Buffer::Counters => {
+                Region::NONE
+            }
+        };
+        // SAFETY: the caller's contract; the plan stays inside of the regions that were checked above.
+        unsafe { self.record(cmd, &plan, region, info.timestamps) };
+        Ok(())
+    }
+
+    /// Records a search for the closest hit of each ray, in the grid at `grid`, the address of the region it was built in.
+    ///
+    /// Put a barrier before it, from whatever wrote the rays and from [`Tracer::BUILD`] to [`Tracer::TRACE`], and one after it, from
+    /// [`Tracer::TRACE`] to whatever reads the hits. The bound compute pipeline and push constants are lost.
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], [`Error::Region`]; then nothing was recorded.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_build`]; and `grid` holds a grid when the commands are executed, while no build writes it.
+    pub unsafe fn cmd_closest_hit(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo) -> Result<()> {
+        let query = Query::Closest { resume: info.resume, count: info.counters.is_some() };
+        // SAFETY: the caller's contract.
+        unsafe { self.trace(cmd, grid, info, query, 16) }
+    }
+
+    /// Records a search for whether each ray hits anything. Barriers as for [`Tracer::cmd_closest_hit`].
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], [`Error::Region`], [`Error::Option`]; then nothing was recorded.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_closest_hit`].
+    pub unsafe fn cmd_any_hit(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo) -> Result<()> {
+        if info.resume || info.counters.is_some() {
+            return Err(Error::Option { option: "resume, counters", value: "set".into(), expected: "closest hit alone has them" });
+        }
+        // SAFETY: the caller's contract.
+        unsafe { self.trace(cmd, grid, info, Query::Any, 4) }
+    }
+
+    /// # Safety
+    /// As for [`Tracer::cmd_closest_hit`].
+    unsafe fn trace(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo, query: Query, hit_size: u64) -> Result<()> {
+        let region = self.trace_regions(grid, info, hit_size)?;
+        let plan = plan::trace_plan(query, info.count.max(), matches!(info.count, RayCount::Indirect { .. }));
+        // SAFETY: the caller's contract; the plan stays inside of the regions that were checked.
+        unsafe { self.record(cmd, &plan, region, None) };
+        Ok(())
+    }
+
+    fn trace_regions(&self, grid: vk::DeviceAddress, info: &TraceInfo, hit_size: u64) -> Result<impl Fn(Buffer) -> Region + use<>> {
+        let max = info.count.max();
+        if max > MAX_RAYS {
+            return Err(Error::Capacity { what: "rays", given: max.into(), limit: MAX_RAYS.into() });
+        }
+        let layout = TraceLayout::new(max);
+        check_region("rays", &info.rays, u64::from(max) * 32, 16)?;
+        check_region("hits", &info.hits, u64::from(max) * hit_size, hit_size.min(16))?;
+        check_region("trace scratch", &info.scratch, layout.size, REGION_ALIGNMENT)?;
+        let count = match info.count {
+            RayCount::Direct(_) => Region::NONE,
+            RayCount::Indirect { count, .. } => {
+                check_region("ray count", &count, 4, 4)?;
+                count
+            }
+        };
+        let counters = info.counters.unwrap_or(Region::NONE);
+        if info.counters.is_some() {
+            check_region("counters", &counters, u64::from(max) * 16, 16)?;
+        }
+        let (rays, hits, scratch) = (info.rays, info.hits, info.scratch);
+        let header = Region { address: grid, ..Region::NONE };
+        Ok(move |buffer| match buffer {
+            Buffer::Header => header,
+            Buffer::Rays => rays,
+            Buffer::Hits => hits,
+            Buffer::RayCount => count,
+            Buffer::Counters => counters,
+            Buffer::TraceState => scratch.part(layout.state.offset, layout.state.size),
+            Buffer::Walks => scratch.part(layout.walks.offset, layout.walks.size),
+            _ => Region::NONE,
+        })
+    }
+
+    /// Records the closest hits by testing every ray with every triangle of the grid: the oracle that the walk is compared with. Slow.
+    ///
+    /// # Errors
+    /// As for [`Tracer::cmd_closest_hit`]; the number of rays must be direct.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_closest_hit`]; the grid holds `triangle_count` triangles.
+    #[doc(hidden)]
+    pub unsafe fn cmd_brute_force(
+        &self,
+        cmd: vk::CommandBuffer,
+        grid: vk::DeviceAddress,
+        triangle_count: u32,
+        info: &TraceInfo,
+    ) -> Result<()> {
+        let region = self.trace_regions(grid, info, 16)?;
+        let mut first = 0;
+        loop {
+            let step = plan::brute_force_step(info.count.max(), triangle_count, first, &self.shape);
+            // SAFETY: the caller's contract.
+            unsafe {
+                self.record_step(cmd, &step, &region);
+                cmd_barrier(&self.device, cmd, SHADER, SHADER);
+            }
+            first += plan::BRUTE_FORCE_TRIANGLES;
+            if first >= triangle_count {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Records the closest hits by a shader that uses the public include.
+    ///
+    /// # Errors
+    /// As for [`Tracer::cmd_closest_hit`]; the number of rays must be direct.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_closest_hit`].
+    #[doc(hidden)]
+    pub unsafe fn cmd_closest_candidate(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo) -> Result<()> {
+        let region = self.trace_regions(grid, info, 16)?;
+        let step = plan::candidate_step(info.count.max(), &self.shape);
+        // SAFETY: the caller's contract.
+        unsafe { self.record_step(cmd, &step, &region) };
+        Ok(())
+    }
+
+    /// # Safety
+    /// The regions hold what the plan's kernels access; otherwise as for [`Tracer::cmd_build`].
+    unsafe fn record(&self, cmd: vk::CommandBuffer, plan: &Plan, region: impl Fn(Buffer) -> Region, timestamps: Option<Timestamps>) {
+        let mut query = timestamps.map(|timestamps| timestamps.first_query);
+        let mut stamp = || {
+            if let (Some(timestamps), Some(next)) = (timestamps, query.as_mut()) {
+                // SAFETY: the pool holds a query for every step and one more.
+                unsafe { self.device.cmd_write_timestamp2(cmd, vk::PipelineStageFlags2::ALL_COMMANDS, timestamps.pool, *next) };
+                *next += 1;
+            }
+        };
+        if let Some(timestamps) = timestamps {
+            let count = plan.steps().count() as u32 + 1;
+            // SAFETY: as above.
+            unsafe { self.device.cmd_reset_query_pool(cmd, timestamps.pool, timestamps.first_query, count) };
+        }
+        stamp();
+        for item in plan.items() {
+            match item {
+                Item::Step(step) => {
+                    // SAFETY: the caller's contract.
+                    unsafe { self.record_step(cmd, step, &region) };
+                    stamp();
+                }
+                Item::Barrier(barrier) => {
+                    let after = match barrier {
+                        plan::Barrier::Shader => SHADER,
+                        plan::Barrier::ShaderAndIndirect => Access::COMPUTE,
+                    };
+                    // SAFETY: the caller's contract.
+                    unsafe { cmd_barrier(&self.device, cmd, Access::COMPUTE, after) };
+                }
+            }
+        }
+    }
+
+    /// # Safety
+    /// As for [`Tracer::record`].
+    unsafe fn record_step(&self, cmd: vk::CommandBuffer, step: &Step, region: impl Fn(Buffer) -> Region) {
+        let Some(pipeline) =
+            self.variants.iter().find(|variant| std::ptr::eq(variant.kernel, step.kernel) && variant.variant == step.variant)
+        else {
+            debug_assert!(false, "no pipeline of {} {}", step.kernel.name, step.variant);
+            return;
+        };
+        let push = step.resolve(|buffer| region(buffer).address);
+        // SAFETY: the pipeline lives as long as the tracer; the addresses are those of regions that were checked.
+        unsafe {
+            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline.pipeline);
+            self.device.cmd_push_constants(cmd, self.layout, vk::ShaderStageFlags::COMPUTE, 0, &push);
+            match step.dispatch {
+                Dispatch::Direct([x, y, z]) => self.device.cmd_dispatch(cmd, x, y, z),
+                Dispatch::Indirect(buffer, offset) => {
+                    let arguments = region(buffer);
+                    self.device.cmd_dispatch_indirect(cmd, arguments.buffer, arguments.offset + offset);
+                }
+            }
+        }
+    }
+}
+
+impl Drop for Tracer {
+    fn drop(&mut self) {
+        // SAFETY: nothing that was recorded is still running, by the contract of `new`.
+        unsafe {
+            for variant in &self.variants {
+                self.device.destroy_pipeline(variant.pipeline, None);
+            }
+            self.device.destroy_pipeline_layout(self.layout, None);
+        }
+    }
+}
+
+fn check_region(name: &'static str, region: &Region, size: u64, alignment: u64) -> Result<()> {
+    if region.size < size {
+        return Err(Error::Region { region: name, reason: format!("{} bytes where {size} are needed", region.size) });
+    }
+    if size > 0 && (region.address == 0 || !region.address.is_multiple_of(alignment)) {
+        return Err(Error::Region { region: name, reason: format!("address {:#x} is not a multiple of {alignment}", region.address) });
+    }
+    Ok(())
+}

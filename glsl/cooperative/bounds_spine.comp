@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// One workgroup unites the boxes of all tiles into the first: the scene box.
+
+#include "shared/bounds.glsl"
+
+layout(push_constant, std430) uniform BoundsSpine {
+    BoundsIn partials;
+    BoundsOut scene;
+    uint partial_count;
+};
+
+void main() {
+    Bounds bounds = empty_bounds();
+    for (uint i = gl_LocalInvocationID.x; i < partial_count; i += gl_WorkGroupSize.x) {
+        bounds = unite(bounds, partials.bounds[i]);
+    }
+    bounds = workgroup_bounds(bounds);
+    if (gl_LocalInvocationID.x == 0u) {
+        scene.bounds[0] = bounds;
+    }
+}

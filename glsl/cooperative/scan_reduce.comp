@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// The saturating sum of a tile: first step of the exclusive scan (reduce, spine, downsweep).
+
+#include "shared/scan.glsl"
+
+layout(constant_id = 1) const uint ITEMS_EACH = 16;
+
+layout(push_constant, std430) uniform ScanReduce {
+    StateIn state;
+    UintsIn values;
+    UintsOut partials;
+    uint which;
+};
+
+void main() {
+    uint tile = workgroup_index();
+    uint length = scan_length(state, which);
+    uint first = (tile * gl_WorkGroupSize.x + gl_LocalInvocationID.x) * ITEMS_EACH;
+    uint sum = 0u;
+    for (uint i = first; i < min(first + ITEMS_EACH, length); ++i) {
+        sum = saturating_add(sum, values.word[i]);
+    }
+    uint total;
+    workgroup_exclusive_scan(sum, total);
+    if (gl_LocalInvocationID.x == 0u && tile * gl_WorkGroupSize.x * ITEMS_EACH < length) {
+        partials.word[tile] = total;
+    }
+}

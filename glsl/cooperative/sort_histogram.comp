@@ -1,0 +1,37 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// How often each digit occurs in a tile of keys.
+
+#include "shared/sort.glsl"
+
+layout(push_constant, std430) uniform SortHistogram {
+    StateIn state;
+    UintsIn keys_a;
+    UintsIn keys_b;
+    UintsOut table;
+    uint pass;
+};
+
+void main() {
+    uint tile = workgroup_index();
+    uint tile_size = gl_WorkGroupSize.x * KEYS_EACH;
+    uint pair_count = state.state.pair_count;
+    uint tile_count = (pair_count + tile_size - 1u) / tile_size;
+    if (tile >= tile_count) {
+        return;
+    }
+    UintsIn keys = UintsIn(writes_a(state.state.pass_count, pass) ? uvec2(keys_a) : uvec2(keys_b));
+    uint first = tile * tile_size + gl_LocalInvocationID.x * KEYS_EACH;
+    count_run(keys, pass, first, min(first + KEYS_EACH, pair_count));
+    barrier();
+    for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += gl_WorkGroupSize.x) {
+        uint sum = 0u;
+        for (uint column = 0u; column < gl_WorkGroupSize.x; ++column) {
+            sum += counter[digit * gl_WorkGroupSize.x + column];
+        }
+        table.word[digit * tile_count + tile] = sum;
+    }
+}

@@ -1,0 +1,53 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// Whether each ray hits anything: 1, 0, or GRIDWALK_UNFINISHED.
+
+#define TRACE_ANY
+#include "shared/trace.glsl"
+
+layout(push_constant, std430) uniform AnyHit {
+    GridwalkGrid grid;
+    RaysIn rays;
+    OccludedOut occluded;
+    TraceStateInOut state;
+    WalkStatesInOut walks;
+};
+
+void main() {
+    uint index = invocation_index();
+    if (index >= state.state.ray_count) {
+        return;
+    }
+    if (CONTINUE && walks.walk[index].given_up == 0u) {
+        return;
+    }
+    Ray ray = rays.ray[index];
+    GridHeader header = grid.header;
+    MovedRay moved = move_ray(ray, header);
+    Counters seen = Counters(0u, 0u, 0u);
+    uint result = 0u;
+    bool given_up = false;
+    if (moved.valid) {
+        Walk walk = walk_begin(header, moved);
+        if (CONTINUE) {
+            walk_restore(walk, header, walks.walk[index]);
+        }
+        given_up = !walk_run(walk, header, seen);
+        result = walk.best_triangle != GRIDWALK_MISS ? 1u : 0u;
+        if (given_up) {
+            if (LAST) {
+                result = GRIDWALK_UNFINISHED;
+            } else {
+                walks.walk[index] = walk_save(walk);
+                state.state.unfinished = 1u;
+            }
+        }
+    }
+    if (!given_up || LAST) {
+        occluded.occluded[index] = result;
+        walks.walk[index].given_up = 0u;
+    }
+}

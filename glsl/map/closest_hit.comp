@@ -1,0 +1,64 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// The closest hit of each ray.
+
+#include "shared/trace.glsl"
+
+layout(push_constant, std430) uniform ClosestHit {
+    GridwalkGrid grid;
+    RaysIn rays;
+    HitsInOut hits;
+    TraceStateInOut state;
+    WalkStatesInOut walks;
+    CountersInOut counters; // read and written only by the counting variant
+};
+
+void main() {
+    uint index = invocation_index();
+    if (index >= state.state.ray_count) {
+        return;
+    }
+    if (CONTINUE && walks.walk[index].given_up == 0u) {
+        return;
+    }
+    Ray ray = rays.ray[index];
+    GridHeader header = grid.header;
+    MovedRay moved = move_ray(ray, header);
+    Hit hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
+    if (RESUME) {
+        hit = hits.hit[index];
+        moved.s_max = hit.triangle < GRIDWALK_UNFINISHED ? distance_to_s(moved, hit.t) : moved.s_max;
+    }
+    Counters seen = Counters(0u, 0u, 0u);
+    bool given_up = false;
+    if (moved.valid) {
+        Walk walk = walk_begin(header, moved);
+        if (CONTINUE) {
+            walk_restore(walk, header, walks.walk[index]);
+        } else {
+            seen = Counters(1u, 0u, uint(walk.reference < walk.list_end));
+        }
+        given_up = !walk_run(walk, header, seen);
+        if (given_up) {
+            if (LAST) {
+                hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_UNFINISHED);
+            } else {
+                walks.walk[index] = walk_save(walk);
+                state.state.unfinished = 1u;
+            }
+        } else if (walk.best_triangle != GRIDWALK_MISS) {
+            hit = Hit(hit_distance(moved, ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
+        }
+    }
+    if (!given_up || LAST) {
+        hits.hit[index] = hit;
+        walks.walk[index].given_up = 0u;
+    }
+    if (COUNT) {
+        uvec4 before = CONTINUE ? counters.counters[index] : uvec4(0u);
+        counters.counters[index] = before + uvec4(seen.steps, seen.tests, seen.cells, 0u);
+    }
+}

@@ -1,0 +1,168 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// One invocation turns the scene box, the number of triangles and the density k into the grid's resolution (thesis Equation 3-1) and
+// into the sizes of the steps that depend on it.
+
+#include "shared/bounds_types.glsl"
+#include "shared/build.glsl"
+#include "shared/intersect.glsl"
+
+layout(local_size_x = 1) in;
+
+layout(constant_id = 1) const uint MAP_SIZE = 64;
+layout(constant_id = 2) const uint SORT_BITS = 8;
+layout(constant_id = 3) const uint REPORT_TILE = 4096;
+
+layout(push_constant, std430) uniform Configure {
+    BoundsIn scene;
+    HeaderOut grid;
+    StateOut state;
+    ArgumentsOut arguments;
+    ReportOut report;
+    // Only their addresses are taken, for the header.
+    Cells cells;
+    References references;
+    Triangles triangles;
+    uint triangle_count;
+    uint cell_capacity;
+    float density;
+    uint fixed_x; // 0: by density
+    uint fixed_y;
+    uint fixed_z;
+    uint exact; // 1: cells that a triangle's box alone overlaps get the sentinel key
+};
+
+const float MAX_RESOLUTION = 4096.0;
+const float PAD = 9.5367431640625e-07; // 2^-20
+const float MIN_CELL_IN_PADS = 4.0;
+const uint CELLS_EACH = 8u; // clear_cells
+
+float cells_for(vec3 relative, vec3 limit, float s) {
+    vec3 cells = min(max(relative * s, vec3(1.0)), limit);
+    return cells.x * cells.y * cells.z;
+}
+
+// Equation 3-1 over the axes that are longer than one of its cells: N = d * s, with the s that gives `target` cells in all. A flat axis
+// has one cell and leaves its share to the others, where the equation as it stands divides by a volume of nothing.
+uvec3 resolution_for(vec3 extent, vec3 limit, float target) {
+    float longest = max(extent.x, max(extent.y, extent.z));
+    vec3 relative = extent / longest;
+    float low = 1.0;
+    float high = max(target, 1.0);
+    // 48 halvings reach neighbouring floats from any start.
+    for (int i = 0; i < 48; ++i) {
+        float middle = 0.5 * (low + high);
+        bool fits = cells_for(relative, limit, middle) <= target;
+        low = fits ? middle : low;
+        high = fits ? high : middle;
+    }
+    return uvec3(min(max(floor(relative * low), vec3(1.0)), limit));
+}
+
+// The least size, from extent / count upwards, whose last boundary reaches `high`.
+float cell_size_for(float low, float high, float count) {
+    float size = (high - low) / count;
+    for (int i = 0; i < 64; ++i) {
+        float offset = count * size;
+        if (low + offset >= high) {
+            break;
+        }
+        size = uintBitsToFloat(floatBitsToUint(size) + 1u);
+    }
+    return size;
+}
+
+void main() {
+    Bounds bounds = scene.bounds[0];
+    bool empty = bounds.dropped == triangle_count;
+    vec3 low = empty ? vec3(0.0) : bounds.low;
+    vec3 high = empty ? vec3(0.0) : bounds.high;
+
+    vec3 magnitude = max(abs(low), abs(high));
+    float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
+    int exponent = largest > 0.0 ? clamped_exponent(largest) : 0;
+    float scale = power_of_two(-exponent);
+    float pad = max(largest * scale, 1.0) * PAD;
+    vec3 box_min = low * scale - vec3(pad);
+    vec3 box_max = high * scale + vec3(pad);
+
+    vec3 extent = box_max - box_min;
+    vec3 limit = min(max(floor(extent / (MIN_CELL_IN_PADS * pad)), vec3(1.0)), vec3(MAX_RESOLUTION));
+    float used_density = density;
+    uvec3 resolution = uvec3(1u);
+    uint overflow = 0u;
+    if (!empty) {
+        float triangles_in_use = float(triangle_count - bounds.dropped);
+        float wanted = max(triangles_in_use * density, 1.0);
+        // Floats below 2^28 that are rounded up could exceed the capacity by a few cells.
+        float capacity = floor(float(cell_capacity) * 0.999999);
+        if (fixed_x != 0u) {
+            resolution = min(uvec3(fixed_x, fixed_y, fixed_z), uvec3(limit));
+            vec3 size = vec3(resolution);
+            if (size.x * size.y * size.z > capacity) {
+                overflow |= OVERFLOW_CELLS;
+                resolution = resolution_for(extent, limit, max(capacity, 1.0));
+            }
+        } else {
+            if (wanted > capacity) {
+                overflow |= OVERFLOW_CELLS;
+                wanted = max(capacity, 1.0);
+                used_density = wanted / triangles_in_use;
+            }
+            resolution = resolution_for(extent, limit, wanted);
+        }
+    }
+    uint cell_count = resolution.x * resolution.y * resolution.z;
+
+    GridHeader header;
+    header.box_min = box_min;
+    header.scale = scale;
+    header.pad = pad;
+    header.cell_size = vec3(cell_size_for(box_min.x, box_max.x, float(resolution.x)), cell_size_for(box_min.y, box_max.y, float(resolution.y)),
+                            cell_size_for(box_min.z, box_max.z, float(resolution.z)));
+    // A walk must not leave the last cell before it leaves the box.
+    header.box_max = box_max;
+    header.inverse_scale = power_of_two(exponent);
+    header.inverse_cell_size = vec3(1.0) / header.cell_size;
+    header.cell_count = cell_count;
+    header.resolution = resolution;
+    header.triangle_count = triangle_count;
+    header.cells = uvec2(cells);
+    header.references = uvec2(references);
+    header.triangles = uvec2(triangles);
+    header.reserved = uvec2(0u);
+    grid.header = header;
+
+    uint largest_key = exact != 0u ? cell_count : cell_count - 1u;
+    BuildState next;
+    next.triangle_count = triangle_count;
+    next.offset_count = triangle_count + 1u;
+    next.pair_total = 0u;
+    next.pair_count = 0u;
+    next.key_bits = largest_key == 0u ? 0u : uint(findMSB(largest_key)) + 1u;
+    next.pass_count = (next.key_bits + SORT_BITS - 1u) / SORT_BITS;
+    next.table_count = 0u;
+    next.overflow = overflow;
+    state.state = next;
+
+    arguments.arguments.clear_cells = uvec4(split_workgroups((cell_count + CELLS_EACH - 1u) / CELLS_EACH, MAP_SIZE), 0u);
+    arguments.arguments.report = uvec4(split_workgroups(cell_count, REPORT_TILE), 0u);
+
+    report.report.triangles = triangle_count;
+    report.report.dropped = bounds.dropped;
+    report.report.cells = cell_count;
+    report.report.cells_in_use = 0u;
+    report.report.resolution = resolution;
+    report.report.longest_list = 0u;
+    report.report.pairs = 0u;
+    report.report.pair_total = 0u;
+    report.report.overflow = overflow;
+    report.report.key_bits = next.key_bits;
+    report.report.box_min = low;
+    report.report.density = used_density;
+    report.report.box_max = high;
+    report.report.reserved = 0u;
+}

@@ -1,0 +1,74 @@
+// What the kernels of the rebuild share: the state that replaces numbers read back by the host.
+#ifndef BUILD_GLSL
+#define BUILD_GLSL
+
+#include "shared/dispatch.glsl"
+#include "shared/grid.glsl"
+
+const uint MAX_PASSES = 8u;
+const uint SATURATED = 0xFFFFFFFFu;
+
+// Host twin: gridwalk_core::layout::BuildState. A later kernel's number of elements is always taken from here.
+struct BuildState {
+    uint triangle_count;
+    uint offset_count; // triangle_count + 1
+    uint pair_total; // cells in all triangles' boxes, saturating
+    uint pair_count; // at most the capacity
+    uint key_bits;
+    uint pass_count; // digits in use
+    uint table_count; // entries of the digit table
+    uint overflow; // OVERFLOW_* bits
+};
+
+const uint OVERFLOW_PAIRS = 1u;
+const uint OVERFLOW_CELLS = 2u;
+
+// Host twin: gridwalk_core::layout::DispatchArguments; each is a VkDispatchIndirectCommand and a word of padding. A pass that is not in
+// use has zero groups.
+struct DispatchArguments {
+    uvec4 clear_cells;
+    uvec4 emit;
+    uvec4 sort[MAX_PASSES];
+    uvec4 table_scan[MAX_PASSES];
+    uvec4 table_spine[MAX_PASSES];
+    uvec4 cell_ranges;
+    uvec4 report;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer StateIn { BuildState state; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer StateOut { BuildState state; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer StateInOut { BuildState state; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer UintsIn { uint word[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) writeonly buffer UintsOut { uint word[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer UintsInOut { uint word[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer FloatsIn { float word[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer HeaderOut { GridHeader header; };
+
+// Host twin: gridwalk_core::layout::Report.
+struct Report {
+    uint triangles;
+    uint dropped;
+    uint cells;
+    uint cells_in_use;
+    uvec3 resolution;
+    uint longest_list;
+    uint pairs;
+    uint pair_total;
+    uint overflow;
+    uint key_bits;
+    vec3 box_min;
+    float density;
+    vec3 box_max;
+    uint reserved;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer ArgumentsOut { DispatchArguments arguments; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer ReportOut { Report report; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer ReportInOut { Report report; };
+
+uint saturating_add(uint a, uint b) {
+    uint sum = a + b;
+    return sum < a ? SATURATED : sum;
+}
+
+#endif

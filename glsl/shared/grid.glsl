@@ -1,0 +1,43 @@
+// The grid as data. Everything from the header on lives in the grid's frame: input coordinates times `scale`, a power of two chosen so
+// that the largest |coordinate| lies in [1, 2). The product is exact, and no threshold below depends on the unit of the scene.
+#ifndef GRID_GLSL
+#define GRID_GLSL
+
+#include "shared/types.glsl"
+
+// [begin, end) in the references; {0, 0} for an empty cell.
+layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint triangle[]; };
+// Three vertices a triangle, the fourth component unused; all zero for a dropped triangle, which no ray hits.
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
+
+// Host twin: gridwalk_core::layout::GridHeader.
+struct GridHeader {
+    vec3 box_min; // padded
+    float scale;
+    vec3 box_max; // padded
+    float pad;
+    vec3 cell_size;
+    float inverse_scale;
+    vec3 inverse_cell_size;
+    uint cell_count;
+    uvec3 resolution;
+    uint triangle_count;
+    uvec2 cells;
+    uvec2 references;
+    uvec2 triangles;
+    uvec2 reserved;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };
+
+// Lower boundary of cell i, upper boundary of cell i - 1. The one function that both the build and the walk use: the walk is watertight
+// only if they agree bit for bit.
+vec3 boundary(vec3 box_min, vec3 cell_size, vec3 i) {
+    vec3 offset = i * cell_size;
+    return box_min + offset;
+}
+
+uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
+
+#endif

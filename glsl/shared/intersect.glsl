@@ -1,0 +1,132 @@
+// A ray brought into the grid's frame, and the watertight ray-triangle test (Woop, Benthin and Wald 2013) there.
+#ifndef INTERSECT_GLSL
+#define INTERSECT_GLSL
+
+#include "shared/grid.glsl"
+
+// Points origin + s * direction. The direction is the ray's, times a power of two that brings its largest component into [1, 2); a
+// component below 2^-40 of the largest is zero. The origin is where the ray enters the padded box, or its own start inside.
+struct MovedRay {
+    vec3 origin;
+    vec3 direction;
+    float s_min;
+    float s_max;
+    // t = (start + s) * t_of_s.x * t_of_s.y: two powers of two, each representable where their product may not be.
+    float start;
+    vec2 t_of_s;
+    // The shear of the triangle test and the axis that it maps to z.
+    vec3 shear;
+    bool z_is_x;
+    bool z_is_y;
+    bool valid;
+};
+
+const float NEGLIGIBLE_COMPONENT = 9.094947017729282e-13; // 2^-40
+const float SLAB_TOLERANCE = 9.5367431640625e-07; // 2^-20, above the rounding of a slab's distance by 2.5 ulp divisions
+
+// 2^e for -126 <= e <= 127.
+float power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
+
+// floor(log2(x)) for normal x > 0, clamped so that the power of two and its inverse are normal numbers.
+int clamped_exponent(float x) { return clamp(int((floatBitsToUint(x) >> 23) & 255u) - 127, -126, 126); }
+
+bool is_finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
+
+vec3 permute(MovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
+
+MovedRay move_ray(Ray ray, GridHeader grid) {
+    MovedRay moved;
+    vec3 magnitude = abs(ray.direction);
+    float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
+    moved.valid = is_finite(ray.origin) && is_finite(ray.direction) && largest > 0.0 && !isnan(ray.t_min) && !isnan(ray.t_max);
+    if (!moved.valid) {
+        return moved;
+    }
+    int exponent = clamped_exponent(largest);
+    float shrink = power_of_two(-exponent);
+    float grow = power_of_two(exponent);
+    bvec3 zero = lessThan(magnitude, vec3(largest * NEGLIGIBLE_COMPONENT));
+    vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
+                          zero.z ? 0.0 : ray.direction.z * shrink);
+    vec3 origin = ray.origin * grid.scale;
+    moved.t_of_s = vec2(grid.inverse_scale, shrink);
+    float first = ray.t_min * grow * grid.scale;
+    float last = ray.t_max * grow * grid.scale;
+
+    // The interval of the box, and the tests of the axes along which the ray does not move.
+    float entry = -GRIDWALK_INFINITY;
+    float leave = GRIDWALK_INFINITY;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0) {
+            moved.valid = moved.valid && origin[axis] >= grid.box_min[axis] && origin[axis] <= grid.box_max[axis];
+        } else {
+            float inverse = 1.0 / direction[axis];
+            bool up = direction[axis] > 0.0;
+            float near = ((up ? grid.box_min[axis] : grid.box_max[axis]) - origin[axis]) * inverse;
+            float far = ((up ? grid.box_max[axis] : grid.box_min[axis]) - origin[axis]) * inverse;
+            entry = max(entry, near);
+            leave = min(leave, far);
+        }
+    }
+    leave += abs(leave) * SLAB_TOLERANCE;
+    moved.start = max(entry, first);
+    // No >, which a NaN would pass.
+    moved.valid = moved.valid && moved.start <= leave && moved.start <= last;
+    vec3 travelled = moved.start * direction;
+    // From far away the entry is rounded by more than the padding: the walk needs an origin inside of the box.
+    moved.origin = min(max(origin + travelled, grid.box_min), grid.box_max);
+    moved.s_min = first - moved.start;
+    moved.s_max = last - moved.start;
+
+    magnitude = abs(direction);
+    moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
+    moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
+    moved.direction = direction;
+    vec3 permuted = permute(moved, direction);
+    float inverse_z = 1.0 / permuted.z;
+    moved.shear = vec3(permuted.x * inverse_z, permuted.y * inverse_z, inverse_z);
+    return moved;
+}
+
+// t of a hit at s, inside of the ray's interval in spite of rounding.
+float hit_distance(MovedRay moved, Ray ray, float s) {
+    float t = (moved.start + s) * moved.t_of_s.x * moved.t_of_s.y;
+    return min(max(t, ray.t_min), ray.t_max);
+}
+
+// s of a t, as hit_distance has it.
+float distance_to_s(MovedRay moved, float t) {
+    return t / moved.t_of_s.y / moved.t_of_s.x - moved.start;
+}
+
+// Whether the ray's line meets the triangle; s, u and v are set if so. Edge functions of a shared edge differ in sign alone, because
+// each is a difference of two products and nothing is contracted; zero counts as inside, so no ray passes between two neighbours.
+// A triangle seen exactly edge-on is not hit. Both windings are.
+bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, out float u, out float v) {
+    vec3 a = permute(ray, v0 - ray.origin);
+    vec3 b = permute(ray, v1 - ray.origin);
+    vec3 c = permute(ray, v2 - ray.origin);
+    float ax = a.x - ray.shear.x * a.z;
+    float ay = a.y - ray.shear.y * a.z;
+    float bx = b.x - ray.shear.x * b.z;
+    float by = b.y - ray.shear.y * b.z;
+    float cx = c.x - ray.shear.x * c.z;
+    float cy = c.y - ray.shear.y * c.z;
+    float edge_u = cx * by - cy * bx;
+    float edge_v = ax * cy - ay * cx;
+    float edge_w = bx * ay - by * ax;
+    bool negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
+    bool positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
+    float determinant = edge_u + edge_v + edge_w;
+    if ((negative && positive) || determinant == 0.0) {
+        return false;
+    }
+    float inverse = 1.0 / determinant;
+    float along = edge_u * a.z + edge_v * b.z + edge_w * c.z;
+    s = along * ray.shear.z * inverse;
+    u = edge_v * inverse;
+    v = edge_w * inverse;
+    return true;
+}
+
+#endif

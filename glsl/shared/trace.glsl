@@ -1,0 +1,83 @@
+// The trace kernels: one walk a ray, given up after TURNS turns and continued by the next dispatch from where it stood.
+//
+// Before including, a kernel may define
+//   TRACE_ANY                 the first accepted hit ends the walk
+//   TRACE_ACCEPT(t, u, v)     whether a candidate on triangle t is a hit: an alpha test, say
+#ifndef TRACE_GLSL
+#define TRACE_GLSL
+
+#include "shared/dispatch.glsl"
+#include "shared/trace_types.glsl"
+#include "shared/walk.glsl"
+
+#ifndef TRACE_ACCEPT
+#define TRACE_ACCEPT(triangle, u, v) true
+#endif
+
+layout(local_size_x_id = 0) in;
+layout(local_size_x = 64) in;
+layout(constant_id = 1) const bool CONTINUE = false; // goes on with walks that were given up, and leaves the others alone
+layout(constant_id = 2) const bool LAST = false; // a walk that is given up now is reported
+layout(constant_id = 3) const bool RESUME = false; // existing hits are to be beaten
+layout(constant_id = 4) const bool COUNT = false;
+
+// lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over all of its loops and over the divergent paths of
+// its subgroup: TURNS * (1 + TESTS_EACH_TURN) = 32,768 stays below.
+const uint TURNS = 4096u;
+const uint TESTS_EACH_TURN = 7u;
+
+struct Counters {
+    uint steps; // cells visited
+    uint tests; // triangles tested
+    uint cells; // cells visited that are not empty
+};
+
+WalkState walk_save(Walk walk) {
+    return WalkState(1u, uint(walk.id), walk.reference, walk.exit, walk.best_s, walk.best_u, walk.best_v, walk.best_triangle);
+}
+
+void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
+    uint slice = grid.resolution.x * grid.resolution.y;
+    uint in_slice = saved.cell % slice;
+    walk.cell = ivec3(in_slice % grid.resolution.x, in_slice / grid.resolution.x, saved.cell / slice);
+    walk.id = int(saved.cell);
+    walk.exit = saved.exit;
+    walk_enter(walk, grid);
+    walk.reference = saved.reference;
+    walk_commit(walk, saved.best_s, saved.best_u, saved.best_v, saved.best_triangle);
+}
+
+// Walks until the end or for TURNS turns; true at the end.
+bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
+    for (uint turn = 0u; turn < TURNS; ++turn) {
+        uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
+        while (walk.reference < stop) {
+            uint triangle = References(grid.references).triangle[walk.reference];
+            float s;
+            float u;
+            float v;
+            if (COUNT) {
+                counters.tests += 1u;
+            }
+            walk.reference += 1u;
+            if (walk_test(walk, grid, triangle, s, u, v) && TRACE_ACCEPT(triangle, u, v)) {
+                walk_commit(walk, s, u, v, triangle);
+#ifdef TRACE_ANY
+                return true;
+#endif
+            }
+        }
+        if (walk.reference >= walk.list_end) {
+            if (walk_is_over(walk) || !walk_step(walk, grid)) {
+                return true;
+            }
+            if (COUNT) {
+                counters.steps += 1u;
+                counters.cells += uint(walk.reference < walk.list_end);
+            }
+        }
+    }
+    return false;
+}
+
+#endif

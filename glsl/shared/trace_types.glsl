@@ -1,0 +1,40 @@
+// What a trace reads and writes, and its state between dispatches.
+#ifndef TRACE_TYPES_GLSL
+#define TRACE_TYPES_GLSL
+
+#include "shared/dispatch.glsl"
+#include "shared/types.glsl"
+
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer RaysIn { Ray ray[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer HitsInOut { Hit hit[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer HitsOut { Hit hit[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer RayCountIn { uint rays; };
+layout(buffer_reference, std430, buffer_reference_align = 4) writeonly buffer OccludedOut { uint occluded[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer CountersInOut { uvec4 counters[]; };
+
+// Host twin: gridwalk_core::layout::TraceState. At the head of a trace's scratch; written by trace_args and trace_continue_args.
+struct TraceState {
+    uvec4 arguments; // VkDispatchIndirectCommand of the next trace
+    uint ray_count;
+    uint unfinished; // 1: a walk was given up
+    uvec2 reserved;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer TraceStateOut { TraceState state; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer TraceStateInOut { TraceState state; };
+
+// Where a walk was given up. Host twin: gridwalk_core::layout::WalkState.
+struct WalkState {
+    uint given_up; // 1: the rest is set
+    uint cell;
+    uint reference;
+    float exit;
+    float best_s;
+    float best_u;
+    float best_v;
+    uint best_triangle;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer WalkStatesInOut { WalkState walk[]; };
+
+#endif
