@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 
+use crate::drivers::{self, Environment};
 use crate::process::{self, Root};
-use crate::{drivers, shaders};
+use crate::shaders;
 
 /// What `cargo tool ci` may be told.
 #[derive(Args)]
@@ -156,8 +157,6 @@ fn test(root: &Root) -> Result<Outcome> {
     }
     Ok(Outcome::Passed)
 }
-
-type Environment = Vec<(&'static str, String)>;
 
 /// The settings of lavapipe that change how kernels are run: subgroups of 4, 8 and 16, and one worker or two.
 fn settings() -> impl Iterator<Item = Environment> {

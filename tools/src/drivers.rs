@@ -13,8 +13,11 @@ struct Driver {
     fill: fn(&Path) -> Result<()>,
     /// Folder in the cache; two drivers may share one.
     folder: &'static str,
-    environment: fn(&Path) -> Result<Vec<(&'static str, String)>>,
+    environment: fn(&Path) -> Environment,
 }
+
+/// Variables and values.
+pub type Environment = Vec<(&'static str, String)>;
 
 const DRIVERS: [Driver; 3] = [
     Driver {
@@ -29,14 +32,14 @@ const DRIVERS: [Driver; 3] = [
         about: "a second, independent driver (subgroups of 4; no 64-bit integers), from Debian's chromium-common",
         fill: fill_chromium,
         folder: "chromium",
-        environment: |folder| Ok(driver_files(&folder.join("swiftshader_icd.json"))),
+        environment: |folder| driver_files(&folder.join("swiftshader_icd.json")),
     },
     Driver {
         name: "validation",
         about: "a current validation layer for any driver, from Debian's chromium-common",
         fill: fill_chromium,
         folder: "chromium",
-        environment: |folder| Ok(vec![("VK_LAYER_PATH", folder.join("layers").display().to_string())]),
+        environment: |folder| vec![("VK_LAYER_PATH", folder.join("layers").display().to_string())],
     },
 ];
 
@@ -50,13 +53,15 @@ pub fn list() {
 /// Brings a driver and prints the environment that selects it.
 pub fn get(name: &str) -> Result<()> {
     for (variable, value) in environment(name)? {
-        println!("export {variable}='{}'", value.replace('\'', "'\\''"));
+        // Libraries come before whatever the shell that evaluates this has.
+        let rest = if variable == LIBRARY_PATH { "\"${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}\"" } else { "" };
+        println!("export {variable}='{}'{rest}", value.replace('\'', "'\\''"));
     }
     Ok(())
 }
 
 /// Brings a driver, if need be, and gives the environment that selects it.
-pub fn environment(name: &str) -> Result<Vec<(&'static str, String)>> {
+pub fn environment(name: &str) -> Result<Environment> {
     let Some(driver) = DRIVERS.iter().find(|driver| driver.name == name) else {
         bail!("{name}: no such driver; there are: {}", DRIVERS.map(|driver| driver.name).join(", "));
     };
@@ -68,12 +73,13 @@ pub fn environment(name: &str) -> Result<Vec<(&'static str, String)>> {
         fs::create_dir_all(parent).with_context(|| format!("{}: cannot be made", parent.display()))?;
     }
     process::complete(&folder, driver.fill)?;
-    (driver.environment)(&folder)
+    Ok((driver.environment)(&folder))
 }
 
+const LIBRARY_PATH: &str = "LD_LIBRARY_PATH";
 const LIBRARIES: &str = "usr/lib/x86_64-linux-gnu";
 
-fn driver_files(manifest: &Path) -> Vec<(&'static str, String)> {
+fn driver_files(manifest: &Path) -> Environment {
     // Older loaders know the second name only.
     ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].map(|name| (name, manifest.display().to_string())).to_vec()
 }
@@ -87,15 +93,10 @@ fn fill_mesa(folder: &Path) -> Result<()> {
     manifest(&folder.join("lvp_icd.json"), &format!("{LIBRARIES}/libvulkan_lvp.so"), "1.4.0")
 }
 
-fn mesa_environment(folder: &Path) -> Result<Vec<(&'static str, String)>> {
-    let mut libraries = folder.join(LIBRARIES).into_os_string();
-    if let Some(path) = std::env::var_os("LD_LIBRARY_PATH").filter(|path| !path.is_empty()) {
-        libraries.push(":");
-        libraries.push(path);
-    }
+fn mesa_environment(folder: &Path) -> Environment {
     let mut environment = driver_files(&folder.join("lvp_icd.json"));
-    environment.push(("LD_LIBRARY_PATH", libraries.into_string().ok().context("LD_LIBRARY_PATH: not UTF-8")?));
-    Ok(environment)
+    environment.push((LIBRARY_PATH, folder.join(LIBRARIES).display().to_string()));
+    environment
 }
 
 fn fill_chromium(folder: &Path) -> Result<()> {
