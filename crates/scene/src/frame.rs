@@ -1,6 +1,6 @@
 //! The automatic camera: no options needed for a picture that shows everything.
 
-use crate::vector::{add, cross, dot, normalised, scale, sub};
+use crate::vector::{Vector, add, cross, dot, normalised, scale, sub};
 use crate::{Bounds, Camera};
 
 /// How to look at a box. The default is a view from the front, a little from the right and above.
@@ -31,6 +31,15 @@ const DEFAULT_ELEVATION: f64 = 20.0;
 /// Share of the picture that stays free around the box.
 const MARGIN: f64 = 1.06;
 
+/// The horizontal directions towards the viewer and to the viewer's right. Front is +Z where Y is up, and -Y where Z is up, as modelling
+/// programs have it.
+pub(crate) fn front_and_side(up: [f32; 3]) -> (Vector, Vector) {
+    let up = normalised(up.map(f64::from)).unwrap_or([0.0, 1.0, 0.0]);
+    let axis = if up[2].abs() > 0.9 { [0.0, -up[2].signum(), 0.0] } else { [0.0, 0.0, 1.0] };
+    let front = normalised(sub(axis, scale(up, dot(axis, up)))).unwrap_or([1.0, 0.0, 0.0]);
+    (front, cross(up, front))
+}
+
 /// A camera from which the whole box is seen, as large as the picture allows, looking at the box's middle. Values of `framing` that make
 /// no sense (not finite, zoom of zero) count as their defaults, so that there is always a camera.
 pub fn frame_camera(bounds: &Bounds, framing: &Framing) -> Camera {
@@ -44,10 +53,7 @@ pub fn frame_camera(bounds: &Bounds, framing: &Framing) -> Camera {
     let aspect = sane(framing.aspect, defaults.aspect, 1e-3, 1e3);
     let up = normalised(framing.up.map(f64::from)).unwrap_or([0.0, 1.0, 0.0]);
 
-    // Front is +Z where Y is up, and -Y where Z is up, as modelling programs have it.
-    let front_axis = if up[2].abs() > 0.9 { [0.0, -up[2].signum(), 0.0] } else { [0.0, 0.0, 1.0] };
-    let front = normalised(sub(front_axis, scale(up, dot(front_axis, up)))).unwrap_or([1.0, 0.0, 0.0]);
-    let side = cross(up, front);
+    let (front, side) = front_and_side(framing.up);
 
     let azimuth = (DEFAULT_AZIMUTH + angle(framing.azimuth)).to_radians();
     let elevation = (DEFAULT_ELEVATION + angle(framing.elevation)).clamp(-89.0, 89.0).to_radians();

@@ -1,41 +1,88 @@
 //! Scene files for gridwalk: OBJ with MTL, and `scene.toml`, into triangles, materials, textures, lights and cameras.
 //!
-//! [`load`] reads a path, [`load_reader`] an OBJ stream. Files that a scene names are opened only below the scene's own folder unless
-//! [`LoadOptions::allow_external_paths`] says otherwise, and only up to the caps of [`LoadOptions`]. No input makes these functions panic.
+//! [`load`] reads a path, [`load_reader`] an OBJ stream, [`generate`] makes meshes without files. Files that a scene names are opened only
+//! below the scene's own folder unless [`LoadOptions::allow_external_paths`] says otherwise, and only up to the caps of [`LoadOptions`]. No
+//! input makes these functions panic.
+//!
+//! The scene file is TOML. All keys are optional but those that its errors ask for:
+//!
+//! ```toml
+//! up = [0, 1, 0]
+//! ambient = 0.1                            # a colour: grey, [r, g, b] in linear light, or "#rrggbb" in sRGB
+//!
+//! [render]
+//! size = [800, 600]
+//! spp = 4
+//! depth = 4
+//! exposure = 0.0                           # stops
+//! tonemap = "none"                         # none, reinhard, aces, agx, neutral
+//! density = 4.0                            # of the grid
+//! camera = "front"
+//!
+//! [background]                             # one of: colour; bottom and top; image (EXR, HDR, PNG, JPEG) with scale and rotation
+//! bottom = 0.3
+//! top = [0.6, 0.7, 0.9]
+//!
+//! [[camera]]
+//! name = "front"
+//! eye = [0, 1, 5]                          # without eye and target: azimuth, elevation, zoom from the automatic view
+//! target = [0, 1, 0]
+//! fov = 40                                 # or orthographic_height
+//!
+//! [[light]]
+//! kind = "directional"                     # irradiance, direction
+//! direction = [-1, -2, -1]
+//! irradiance = 2.5
+//!
+//! [[light]]
+//! kind = "spot"                            # or "point": intensity, position; a spot also direction or target, inner, outer (degrees)
+//! position = [0, 4, 0]
+//! target = [0, 0, 0]
+//! outer = 30
+//! intensity = [20, 18, 15]
+//!
+//! [[material]]                             # also emission, opacity, index_of_refraction, illumination, and maps: diffuse_map = "a.png",
+//! name = "steel"                           # specular_map, emission_map, opacity_map, normal_map or bump_map, bump_scale
+//! diffuse = 0.1
+//! specular = 0.8
+//! shininess = 200
+//! mirror = true                            # as illumination = 3
+//!
+//! [[mesh]]
+//! file = "teapot.obj"
+//! scale = 2                                # then rotate (degrees about x, y, z), then translate; or matrix, rows of 4 numbers
+//! rotate = [0, 45, 0]
+//! translate = [0, 1, 0]
+//!
+//! [[mesh]]
+//! shape = "sphere"                         # plane, box, quad, torus, knot, soup, bumpy
+//! radius = 0.5
+//! material = "steel"
+//! ```
 #![forbid(unsafe_code)]
 
+mod description;
 mod error;
+mod files;
 mod frame;
+pub mod generate;
+mod lines;
+mod load;
+mod mtl;
+mod normals;
+mod obj;
+mod obj_scene;
 mod options;
+mod panorama;
+mod suggest;
+mod texture;
+mod transform;
+mod triangulate;
 mod types;
 mod vector;
 
 pub use error::{Error, Result};
 pub use frame::{Framing, frame_camera};
+pub use load::{load, load_reader, scene_of_mesh};
 pub use options::LoadOptions;
 pub use types::{Background, Bounds, Camera, Light, Material, Mesh, NamedCamera, RenderDefaults, Scene, TONEMAPS, Texture};
-
-use std::io::Read;
-use std::path::Path;
-
-/// Reads a scene: an `.obj` file, or a `scene.toml`, or a folder that holds a `scene.toml`.
-///
-/// A scene without lights gets a key and a fill light and a soft gradient as background; one without cameras is framed automatically
-/// ([`Scene::camera`]).
-///
-/// # Errors
-/// Files that cannot be opened, are outside the scene's folder, too large, or malformed: see [`Error`]. Missing or unreadable materials
-/// and textures are no errors; [`Scene::warnings`] lists them.
-pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
-    let _ = options;
-    Err(Error::UnknownFormat { path: path.to_owned() })
-}
-
-/// Reads an OBJ stream, such as standard input. Materials are looked for below `folder`; without one none is opened.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_reader(reader: &mut dyn Read, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
-    let _ = (reader, folder, options);
-    Err(Error::UnknownFormat { path: "-".into() })
-}

@@ -119,7 +119,8 @@ pub struct Texture {
     pub has_alpha: bool,
 }
 
-/// A light without extent. All values are linear RGB.
+/// A light without extent. All values are linear RGB. A diffuse surface reflects `diffuse * irradiance * cosine / π` of it, so that white paper
+/// looks white (radiance 1) under an irradiance of π.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Light {

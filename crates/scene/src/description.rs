@@ -1,0 +1,752 @@
+//! The scene file: TOML, every key checked, every error with its line.
+
+use std::collections::HashSet;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
+use toml::Spanned;
+
+use crate::files::{Files, read_file};
+use crate::generate;
+use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, empty, folder_of, stem};
+use crate::obj_scene::{self, Target};
+use crate::panorama;
+use crate::suggest::closest;
+use crate::texture::{Textures, Use, holds_normals};
+use crate::transform::Transform;
+use crate::vector::{cross, dot, normalised, sub};
+use crate::{Background, Camera, Error, Framing, Light, LoadOptions, Material, Mesh, NamedCamera, RenderDefaults, Result, Scene, TONEMAPS};
+
+/// A finite number that fits single precision.
+#[derive(Clone, Copy, Debug)]
+struct Number(f32);
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = f64::deserialize(deserializer)? as f32;
+        if value.is_finite() { Ok(Self(value)) } else { Err(D::Error::custom("the number must be finite")) }
+    }
+}
+
+type Vec3 = [Number; 3];
+
+fn plain<const N: usize>(values: [Number; N]) -> [f32; N] {
+    values.map(|value| value.0)
+}
+
+/// Linear RGB, each 0 or more: one number (grey), three numbers, or sRGB as "#rrggbb".
+#[derive(Clone, Copy, Debug)]
+struct Colour([f32; 3]);
+
+impl<'de> Deserialize<'de> for Colour {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ColourVisitor;
+        impl<'de> Visitor<'de> for ColourVisitor {
+            type Value = [f32; 3];
+
+            fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.write_str("a colour: a number, [red, green, blue] (linear), or \"#rrggbb\" (sRGB)")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {
+                Ok([value as f32; 3])
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
+                Ok([value as f32; 3])
+            }
+
+            fn visit_str<E: serde::de::Error>(self, value: &str) -> Result<Self::Value, E> {
+                let digits =
+                    value.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.bytes().all(|byte| byte.is_ascii_hexdigit()));
+                let code = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+                let code = code.ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(value), &self))?;
+                Ok([code >> 16, code >> 8 & 255, code & 255].map(|byte| srgb_to_linear(byte as f32 / 255.0)))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
+                let mut values = [0.0; 3];
+                for (at, value) in values.iter_mut().enumerate() {
+                    *value = sequence.next_element::<f64>()?.ok_or_else(|| A::Error::invalid_length(at, &self))? as f32;
+                }
+                match sequence.next_element::<f64>()? {
+                    None => Ok(values),
+                    Some(_) => Err(A::Error::invalid_length(4, &self)),
+                }
+            }
+        }
+        let colour = deserializer.deserialize_any(ColourVisitor)?;
+        if colour.iter().all(|&value| value.is_finite() && value >= 0.0) {
+            Ok(Self(colour))
+        } else {
+            Err(D::Error::custom("the parts of a colour must be finite and 0 or more"))
+        }
+    }
+}
+
+fn srgb_to_linear(value: f32) -> f32 {
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Description {
+    up: Option<Spanned<Vec3>>,
+    ambient: Option<Colour>,
+    render: Option<RenderEntry>,
+    background: Option<Spanned<BackgroundEntry>>,
+    #[serde(default)]
+    camera: Vec<Spanned<CameraEntry>>,
+    #[serde(default)]
+    light: Vec<Spanned<LightEntry>>,
+    #[serde(default)]
+    material: Vec<Spanned<MaterialEntry>>,
+    #[serde(default)]
+    mesh: Vec<Spanned<MeshEntry>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RenderEntry {
+    size: Option<Spanned<[u32; 2]>>,
+    spp: Option<Spanned<u32>>,
+    depth: Option<u32>,
+    exposure: Option<Number>,
+    tonemap: Option<Spanned<String>>,
+    density: Option<Spanned<Number>>,
+    camera: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BackgroundEntry {
+    colour: Option<Colour>,
+    bottom: Option<Colour>,
+    top: Option<Colour>,
+    image: Option<Spanned<String>>,
+    scale: Option<Number>,
+    rotation: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraEntry {
+    name: Spanned<String>,
+    eye: Option<Vec3>,
+    target: Option<Vec3>,
+    up: Option<Vec3>,
+    fov: Option<Spanned<Number>>,
+    orthographic_height: Option<Spanned<Number>>,
+    azimuth: Option<Number>,
+    elevation: Option<Number>,
+    zoom: Option<Spanned<Number>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LightEntry {
+    kind: Spanned<String>,
+    position: Option<Vec3>,
+    direction: Option<Spanned<Vec3>>,
+    target: Option<Spanned<Vec3>>,
+    intensity: Option<Colour>,
+    irradiance: Option<Colour>,
+    inner: Option<Number>,
+    outer: Option<Spanned<Number>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialEntry {
+    name: Spanned<String>,
+    diffuse: Option<Colour>,
+    specular: Option<Colour>,
+    shininess: Option<Spanned<Number>>,
+    emission: Option<Colour>,
+    opacity: Option<Spanned<Number>>,
+    index_of_refraction: Option<Number>,
+    illumination: Option<Spanned<u32>>,
+    mirror: Option<bool>,
+    diffuse_map: Option<Spanned<String>>,
+    specular_map: Option<Spanned<String>>,
+    emission_map: Option<Spanned<String>>,
+    opacity_map: Option<Spanned<String>>,
+    normal_map: Option<Spanned<String>>,
+    bump_map: Option<Spanned<String>>,
+    bump_scale: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeshEntry {
+    file: Option<Spanned<String>>,
+    shape: Option<Spanned<String>>,
+    name: Option<String>,
+    material: Option<Spanned<String>>,
+    translate: Option<Vec3>,
+    rotate: Option<Vec3>,
+    scale: Option<Spanned<Scale>>,
+    matrix: Option<Spanned<Vec<[Number; 4]>>>,
+    radius: Option<Spanned<Number>>,
+    tube: Option<Spanned<Number>>,
+    size: Option<Vec<Number>>,
+    segments: Option<Spanned<u32>>,
+    triangles: Option<Spanned<u32>>,
+    seed: Option<u32>,
+    corners: Option<[Vec3; 4]>,
+    uv_scale: Option<Number>,
+}
+
+/// One factor, or one an axis.
+#[derive(Clone, Copy, Debug)]
+struct Scale([f32; 3]);
+
+impl<'de> Deserialize<'de> for Scale {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ScaleVisitor;
+        impl<'de> Visitor<'de> for ScaleVisitor {
+            type Value = [f64; 3];
+
+            fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.write_str("a number, or three numbers [x, y, z]")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {
+                Ok([value; 3])
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
+                Ok([value as f64; 3])
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
+                let mut values = [0.0; 3];
+                for (at, value) in values.iter_mut().enumerate() {
+                    *value = sequence.next_element::<f64>()?.ok_or_else(|| A::Error::invalid_length(at, &self))?;
+                }
+                match sequence.next_element::<f64>()? {
+                    None => Ok(values),
+                    Some(_) => Err(A::Error::invalid_length(4, &self)),
+                }
+            }
+        }
+        let scale = deserializer.deserialize_any(ScaleVisitor)?.map(|value| value as f32);
+        if scale.iter().all(|value| value.is_finite() && *value != 0.0) {
+            Ok(Self(scale))
+        } else {
+            Err(D::Error::custom("a scale must be finite and not 0"))
+        }
+    }
+}
+
+/// The cap for what a scene file may generate in one mesh.
+const MAX_GENERATED_TRIANGLES: u64 = 1 << 25;
+/// The cap for all shapes of a scene file together.
+const MAX_GENERATED_TOTAL: u64 = 1 << 26;
+
+/// Reads a scene file. Everything that it names lies below its folder, unless the options allow more.
+pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
+    let bytes = read_file(path, options.max_description_bytes)?;
+    let shown = path.to_string_lossy().into_owned();
+    let text = String::from_utf8(bytes).map_err(|error| Error::Description {
+        file: shown.clone(),
+        line: 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&byte| byte == b'\n').count() as u64,
+        message: "the text is not UTF-8; save it as UTF-8".to_owned(),
+    })?;
+    let source = Source { file: &shown, text: &text };
+    let description: Description = toml::from_str(&text).map_err(|error| source.toml_error(&error))?;
+    let files = Files::new(Some(&folder_of(path)), options.allow_external_paths)?;
+    let root = files.root().map(Path::to_owned).unwrap_or_default();
+    let mut builder = Builder {
+        source,
+        options,
+        files: &files,
+        root,
+        textures: Textures::new(&files, options),
+        materials: vec![Material::default()],
+        warnings: Vec::new(),
+        generated: 0,
+    };
+    builder.build(description)
+}
+
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    file: &'a str,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn error(&self, at: usize, message: impl Into<String>) -> Error {
+        let line = 1 + self.text.as_bytes().iter().take(at).filter(|&&byte| byte == b'\n').count() as u64;
+        Error::Description { file: self.file.to_owned(), line, message: message.into() }
+    }
+
+    fn error_in(&self, span: Range<usize>, message: impl Into<String>) -> Error {
+        self.error(span.start, message)
+    }
+
+    fn toml_error(&self, error: &toml::de::Error) -> Error {
+        // Several lines in places; the parts after the first say what was expected.
+        let mut message = error.message().trim().replace('\n', "; ");
+        // "unknown field `a`, expected one of `b`, `c`": all names stand in the message.
+        if message.starts_with("unknown field") {
+            let mut names = message.split('`').skip(1).step_by(2);
+            let near = names.next().and_then(|wrong| closest(wrong, names)).map(str::to_owned);
+            if let Some(near) = near {
+                message = format!("{message}; did you mean `{near}`?");
+            }
+        }
+        self.error(error.span().map_or(0, |span| span.start), message)
+    }
+
+    /// The place of a name in a list.
+    fn choose(&self, what: &str, name: &Spanned<String>, choices: &[&str]) -> Result<usize> {
+        choices.iter().position(|choice| choice == name.get_ref()).ok_or_else(|| {
+            let near =
+                closest(name.get_ref(), choices.iter().copied()).map(|near| format!("; did you mean \"{near}\"?")).unwrap_or_default();
+            let list = choices.iter().map(|choice| format!("\"{choice}\"")).collect::<Vec<_>>().join(", ");
+            self.error_in(name.span(), format!("no {what} \"{}\"; there are {list}{near}", name.get_ref()))
+        })
+    }
+
+    fn direction(&self, what: &str, value: &Spanned<Vec3>) -> Result<[f32; 3]> {
+        normalised(plain(*value.get_ref()).map(f64::from))
+            .map(|direction| direction.map(|value| value as f32))
+            .ok_or_else(|| self.error_in(value.span(), format!("{what} must not be [0, 0, 0]")))
+    }
+
+    fn within(&self, what: &str, value: &Spanned<Number>, low: f32, high: f32) -> Result<f32> {
+        let number = value.get_ref().0;
+        if number >= low && number <= high {
+            Ok(number)
+        } else {
+            Err(self.error_in(value.span(), format!("{what} is {number}; it must be from {low} to {high}")))
+        }
+    }
+
+    fn above_zero(&self, what: &str, value: &Spanned<Number>) -> Result<f32> {
+        let number = value.get_ref().0;
+        if number > 0.0 { Ok(number) } else { Err(self.error_in(value.span(), format!("{what} is {number}; it must be above 0"))) }
+    }
+}
+
+struct Builder<'a> {
+    source: Source<'a>,
+    options: &'a LoadOptions,
+    files: &'a Files,
+    root: PathBuf,
+    textures: Textures<'a>,
+    materials: Vec<Material>,
+    warnings: Vec<String>,
+    generated: u64,
+}
+
+impl Builder<'_> {
+    fn build(&mut self, description: Description) -> Result<Scene> {
+        let source = self.source;
+        let up = match &description.up {
+            Some(up) => source.direction("up", up)?,
+            None => [0.0, 1.0, 0.0],
+        };
+        let mut names = HashSet::new();
+        for entry in description.material {
+            let at = entry.span().start;
+            let material = self.material(entry.into_inner())?;
+            if !names.insert(material.name.clone()) {
+                return Err(source.error(at, format!("material \"{}\" is there twice; rename one", material.name)));
+            }
+            self.materials.push(material);
+        }
+        // The names that meshes may use are those of the file, not those that OBJ files bring along.
+        let named: Vec<String> = self.materials.iter().map(|material| material.name.clone()).collect();
+        let mut meshes = Vec::new();
+        for entry in description.mesh {
+            let at = entry.span().start;
+            meshes.push(self.mesh(entry.into_inner(), at, &named)?);
+        }
+        let lights = description.light.into_iter().map(|entry| self.light(entry)).collect::<Result<Vec<_>>>()?;
+        let background = match description.background {
+            Some(entry) => self.background(entry)?,
+            None => DEFAULT_BACKGROUND,
+        };
+        let mut scene = Scene { meshes, background, up, ..empty() };
+        if lights.is_empty() {
+            scene.lights = default_lights(up);
+            scene.ambient = DEFAULT_AMBIENT;
+        } else {
+            scene.lights = lights;
+        }
+        if let Some(Colour(ambient)) = description.ambient {
+            scene.ambient = ambient;
+        }
+        if let Some(render) = &description.render {
+            scene.defaults = self.render(render)?;
+        }
+        for entry in description.camera {
+            let camera = self.camera(entry, &scene)?;
+            scene.cameras.push(camera);
+        }
+        if let Some(wanted) = description.render.as_ref().and_then(|render| render.camera.as_ref()) {
+            let cameras: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
+            source.choose("camera", wanted, &cameras)?;
+        }
+        if scene.meshes.is_empty() {
+            self.warnings.push(format!("{}: holds no meshes", source.file));
+        }
+        scene.materials = std::mem::take(&mut self.materials);
+        scene.textures = std::mem::take(&mut self.textures.textures);
+        scene.warnings = std::mem::take(&mut self.warnings);
+        Ok(scene)
+    }
+
+    fn render(&self, entry: &RenderEntry) -> Result<RenderDefaults> {
+        let source = self.source;
+        if let Some(size) = &entry.size
+            && size.get_ref().contains(&0)
+        {
+            return Err(source.error_in(size.span(), "width and height of a picture must be 1 or more"));
+        }
+        if let Some(spp) = &entry.spp
+            && *spp.get_ref() == 0
+        {
+            return Err(source.error_in(spp.span(), "spp must be 1 or more"));
+        }
+        if let Some(tonemap) = &entry.tonemap {
+            source.choose("tonemap", tonemap, &TONEMAPS)?;
+        }
+        Ok(RenderDefaults {
+            size: entry.size.as_ref().map(|size| *size.get_ref()),
+            spp: entry.spp.as_ref().map(|spp| *spp.get_ref()),
+            depth: entry.depth,
+            exposure: entry.exposure.map(|exposure| exposure.0),
+            tonemap: entry.tonemap.as_ref().map(|tonemap| tonemap.get_ref().clone()),
+            density: entry.density.as_ref().map(|density| source.above_zero("density", density)).transpose()?,
+            camera: entry.camera.as_ref().map(|camera| camera.get_ref().clone()),
+        })
+    }
+
+    fn background(&mut self, entry: Spanned<BackgroundEntry>) -> Result<Background> {
+        let source = self.source;
+        let at = entry.span().start;
+        let entry = entry.into_inner();
+        if entry.image.is_none() && (entry.scale.is_some() || entry.rotation.is_some()) {
+            return Err(source.error(at, "scale and rotation of a background belong to an image"));
+        }
+        match (entry.colour, entry.bottom, entry.top, entry.image) {
+            (Some(Colour(colour)), None, None, None) => Ok(Background::Colour(colour)),
+            (None, Some(Colour(bottom)), Some(Colour(top)), None) => Ok(Background::Gradient { bottom, top }),
+            (None, None, None, Some(image)) => {
+                let path = self.find(&image)?;
+                let bytes = self.files.read(&path, self.options.max_texture_bytes)?;
+                let scale = entry.scale.map_or(1.0, |scale| scale.0);
+                let (width, height, pixels) = panorama::decode(&bytes, scale, self.options)
+                    .map_err(|message| source.error_in(image.span(), format!("{}: {message}", image.get_ref())))?;
+                Ok(Background::Equirectangular {
+                    width,
+                    height,
+                    pixels,
+                    rotation_degrees: entry.rotation.map_or(0.0, |rotation| rotation.0),
+                })
+            }
+            _ => Err(source.error(at, "a background needs one of: colour, or bottom and top, or image")),
+        }
+    }
+
+    fn camera(&self, entry: Spanned<CameraEntry>, scene: &Scene) -> Result<NamedCamera> {
+        let source = self.source;
+        let at = entry.span().start;
+        let entry = entry.into_inner();
+        let name = entry.name.get_ref().clone();
+        if scene.cameras.iter().any(|camera| camera.name == name) {
+            return Err(source.error_in(entry.name.span(), format!("camera \"{name}\" is there twice; rename one")));
+        }
+        let fov = entry.fov.as_ref().map(|fov| source.within("fov", fov, 0.01, 179.0)).transpose()?;
+        let orthographic_height =
+            entry.orthographic_height.as_ref().map(|height| source.above_zero("orthographic_height", height)).transpose()?;
+        let up = entry.up.map_or(scene.up, plain);
+        let mut framing = Framing { up, ..Framing::default() };
+        if let Some(fov) = fov {
+            framing.vertical_fov_degrees = fov;
+        }
+        let framed = entry.azimuth.is_some() || entry.elevation.is_some() || entry.zoom.is_some();
+        let mut camera = match (entry.eye, entry.target) {
+            (Some(eye), Some(target)) if !framed => Camera {
+                eye: plain(eye),
+                target: plain(target),
+                up,
+                vertical_fov_degrees: framing.vertical_fov_degrees,
+                orthographic_height: None,
+            },
+            (None, None) => {
+                framing.azimuth = entry.azimuth.map_or(0.0, |azimuth| azimuth.0);
+                framing.elevation = entry.elevation.map_or(0.0, |elevation| elevation.0);
+                framing.zoom = entry.zoom.as_ref().map(|zoom| source.above_zero("zoom", zoom)).transpose()?.unwrap_or(1.0);
+                if let Some([width, height]) = scene.defaults.size {
+                    framing.aspect = width as f32 / height as f32;
+                }
+                scene.frame(&framing)
+            }
+            _ => {
+                return Err(
+                    source.error(at, "a camera needs eye and target, or neither (with azimuth, elevation, zoom from the automatic view)")
+                );
+            }
+        };
+        camera.orthographic_height = orthographic_height;
+        let view = sub(camera.target.map(f64::from), camera.eye.map(f64::from));
+        let (Some(view), Some(up)) = (normalised(view), normalised(up.map(f64::from))) else {
+            return Err(source.error(at, "a camera's eye and target must differ, and up must not be [0, 0, 0]"));
+        };
+        let side = cross(view, up);
+        if dot(side, side) < 1e-12 {
+            return Err(source.error(at, "a camera must not look along its up; give another up"));
+        }
+        Ok(NamedCamera { name, camera })
+    }
+
+    fn light(&self, entry: Spanned<LightEntry>) -> Result<Light> {
+        let source = self.source;
+        let at = entry.span().start;
+        let entry = entry.into_inner();
+        let missing = |what: &str| source.error(at, format!("a {} light needs {what}", entry.kind.get_ref()));
+        let unused = |what: &str| source.error(at, format!("a {} light has no {what}", entry.kind.get_ref()));
+        let position = || entry.position.map(plain).ok_or_else(|| missing("position = [x, y, z]"));
+        let intensity = || entry.intensity.map(|Colour(colour)| colour).ok_or_else(|| missing("intensity"));
+        let direction = |from: Option<[f32; 3]>| match (&entry.direction, &entry.target, from) {
+            (Some(direction), None, _) => source.direction("direction", direction),
+            (None, Some(target), Some(from)) => {
+                let way = sub(plain(*target.get_ref()).map(f64::from), from.map(f64::from));
+                let way = normalised(way).ok_or_else(|| source.error_in(target.span(), "target must differ from position"))?;
+                Ok(way.map(|value| value as f32))
+            }
+            (None, Some(_), None) => Err(missing("position with target, or direction")),
+            (Some(_), Some(_), _) => Err(source.error(at, "a light has direction or target, not both")),
+            (None, None, _) => Err(missing("direction or target")),
+        };
+        let kind = source.choose("kind of light", &entry.kind, &["point", "directional", "spot"])?;
+        if kind != 1 && entry.irradiance.is_some() {
+            return Err(unused("irradiance; give intensity"));
+        }
+        if kind != 2 && (entry.inner.is_some() || entry.outer.is_some()) {
+            return Err(unused("cone; inner and outer belong to a spot light"));
+        }
+        match kind {
+            0 if entry.direction.is_some() || entry.target.is_some() => Err(unused("direction")),
+            0 => Ok(Light::Point { position: position()?, intensity: intensity()? }),
+            1 if entry.intensity.is_some() => Err(unused("intensity; give irradiance")),
+            1 => Ok(Light::Directional {
+                direction: direction(entry.position.map(plain))?,
+                irradiance: entry.irradiance.map(|Colour(colour)| colour).ok_or_else(|| missing("irradiance"))?,
+            }),
+            _ => {
+                let position = position()?;
+                let outer_degrees =
+                    entry.outer.as_ref().map(|outer| source.within("outer", outer, 0.01, 90.0)).transpose()?.unwrap_or(45.0);
+                let inner_degrees = entry.inner.map_or(outer_degrees * 0.8, |inner| inner.0).clamp(0.0, outer_degrees);
+                Ok(Light::Spot { position, direction: direction(Some(position))?, intensity: intensity()?, inner_degrees, outer_degrees })
+            }
+        }
+    }
+
+    fn material(&mut self, entry: MaterialEntry) -> Result<Material> {
+        let source = self.source;
+        let defaults = Material::default();
+        let diffuse_map = self.texture(&entry.diffuse_map, Use::Colour)?;
+        let opacity_map = match &entry.opacity_map {
+            Some(_) => self.texture(&entry.opacity_map, Use::Opacity)?,
+            None => self.texture(&entry.diffuse_map, Use::AlphaOfColour)?,
+        };
+        let specular_map = self.texture(&entry.specular_map, Use::Colour)?;
+        let emission_map = self.texture(&entry.emission_map, Use::Colour)?;
+        if let (Some(_), Some(bump)) = (&entry.normal_map, &entry.bump_map) {
+            return Err(source.error_in(bump.span(), "a material has normal_map or bump_map, not both"));
+        }
+        let normals = self.texture(&entry.normal_map, Use::Data)?;
+        let bumps = self.texture(&entry.bump_map, Use::Data)?;
+        let normal_map_is_height =
+            bumps.and_then(|map| self.textures.textures.get(map as usize)).is_some_and(|texture| !holds_normals(texture));
+        let given = |colour: Option<Colour>, map: Option<u32>, absent: [f32; 3]| match (colour, map) {
+            (Some(Colour(colour)), _) => colour,
+            (None, Some(_)) => [1.0; 3],
+            (None, None) => absent,
+        };
+        let mirror = entry.mirror.unwrap_or(false);
+        let illumination = match &entry.illumination {
+            Some(illumination) if *illumination.get_ref() > 10 => {
+                return Err(source.error_in(illumination.span(), "illumination must be from 0 to 10, as illum in MTL files"));
+            }
+            Some(illumination) => *illumination.get_ref(),
+            None if mirror => 3,
+            None if entry.specular.is_some() => 2,
+            None => defaults.illumination,
+        };
+        let specular = given(entry.specular, specular_map, if mirror { [1.0; 3] } else { defaults.specular });
+        Ok(Material {
+            name: entry.name.get_ref().clone(),
+            diffuse: given(entry.diffuse, diffuse_map, if mirror { [0.0; 3] } else { defaults.diffuse }),
+            specular,
+            shininess: entry.shininess.as_ref().map_or(Ok(defaults.shininess), |value| source.within("shininess", value, 0.0, 1e6))?,
+            emission: given(entry.emission, emission_map, defaults.emission),
+            opacity: entry.opacity.as_ref().map_or(Ok(defaults.opacity), |value| source.within("opacity", value, 0.0, 1.0))?,
+            index_of_refraction: entry.index_of_refraction.map_or(defaults.index_of_refraction, |value| value.0),
+            illumination,
+            diffuse_map,
+            specular_map,
+            emission_map,
+            opacity_map,
+            normal_map: normals.or(bumps),
+            normal_map_is_height,
+            bump_scale: entry.bump_scale.map_or(1.0, |scale| scale.0),
+        })
+    }
+
+    fn texture(&mut self, name: &Option<Spanned<String>>, usage: Use) -> Result<Option<u32>> {
+        let Some(name) = name else { return Ok(None) };
+        let source = self.source;
+        let root = self.root.clone();
+        self.textures.load(&root, name.get_ref(), usage).or_else(|message| match source.error_in(name.span(), message) {
+            Error::Description { file, line, message } => {
+                self.warnings.push(format!("{file}:{line}: no texture: {message}"));
+                Ok(None)
+            }
+            error => Err(error),
+        })
+    }
+
+    /// The path of a file that the scene cannot do without.
+    fn find(&self, name: &Spanned<String>) -> Result<PathBuf> {
+        self.files.find(&self.root, name.get_ref()).map_err(|error| self.source.error_in(name.span(), error.to_string()))
+    }
+
+    fn mesh(&mut self, entry: MeshEntry, at: usize, named: &[String]) -> Result<Mesh> {
+        let source = self.source;
+        let material = match &entry.material {
+            Some(name) => Some(source.choose("material", name, &named.iter().map(String::as_str).collect::<Vec<_>>())? as u32),
+            None => None,
+        };
+        let mut mesh = match (&entry.file, &entry.shape) {
+            (Some(file), None) => {
+                self.refuse_shape_keys(&entry, at)?;
+                let path = self.find(file)?;
+                let in_place = |error: Error| match error {
+                    error @ (Error::Obj { .. } | Error::Description { .. }) => error,
+                    error => source.error_in(file.span(), error.to_string()),
+                };
+                let bytes = self.files.read(&path, self.options.max_mesh_bytes).map_err(in_place)?;
+                let mut target = Target {
+                    files: self.files,
+                    options: self.options,
+                    textures: &mut self.textures,
+                    materials: &mut self.materials,
+                    warnings: &mut self.warnings,
+                };
+                let folder = folder_of(&path);
+                obj_scene::read(&mut target, &bytes, file.get_ref(), &stem(&path), Some(&folder), 0)?
+            }
+            (None, Some(shape)) => self.shape(&entry, shape, at)?,
+            _ => return Err(source.error(at, "a mesh needs file = \"name.obj\" or shape = \"sphere\"")),
+        };
+        if let Some(name) = entry.name {
+            mesh.name = name;
+        }
+        if let Some(material) = material {
+            mesh.materials.fill(material);
+        }
+        if let Some(scale) = entry.uv_scale {
+            for uv in mesh.uvs.as_flattened_mut() {
+                *uv *= scale.0;
+            }
+        }
+        let transform = match (&entry.matrix, entry.translate.is_some() || entry.rotate.is_some() || entry.scale.is_some()) {
+            (Some(matrix), true) => {
+                return Err(source.error_in(matrix.span(), "a mesh has a matrix, or translate, rotate and scale, not both"));
+            }
+            (Some(matrix), false) => {
+                let rows: Vec<[f64; 4]> = matrix.get_ref().iter().map(|row| plain(*row).map(f64::from)).collect();
+                Transform::from_rows(&rows).ok_or_else(|| {
+                    source.error_in(
+                        matrix.span(),
+                        "matrix must be 3 rows of 4 numbers (or 4 rows, the last [0, 0, 0, 1]) and not flatten the mesh",
+                    )
+                })?
+            }
+            (None, _) => Transform::new(
+                entry.scale.as_ref().map_or([1.0; 3], |scale| scale.get_ref().0).map(f64::from),
+                entry.rotate.map_or([0.0; 3], plain).map(f64::from),
+                entry.translate.map_or([0.0; 3], plain).map(f64::from),
+            ),
+        };
+        transform.apply(&mut mesh);
+        Ok(mesh)
+    }
+
+    fn refuse_shape_keys(&self, entry: &MeshEntry, at: usize) -> Result<()> {
+        let keys = [
+            ("radius", entry.radius.is_some()),
+            ("tube", entry.tube.is_some()),
+            ("size", entry.size.is_some()),
+            ("segments", entry.segments.is_some()),
+            ("triangles", entry.triangles.is_some()),
+            ("seed", entry.seed.is_some()),
+            ("corners", entry.corners.is_some()),
+        ];
+        match keys.iter().find(|(_, given)| *given) {
+            Some((key, _)) => Err(self.source.error(at, format!("{key} belongs to a shape, not to a file"))),
+            None => Ok(()),
+        }
+    }
+
+    fn shape(&mut self, entry: &MeshEntry, shape: &Spanned<String>, at: usize) -> Result<Mesh> {
+        let source = self.source;
+        let kind = source.choose("shape", shape, &["sphere", "plane", "box", "quad", "torus", "knot", "soup", "bumpy"])?;
+        let radius = entry.radius.as_ref().map(|radius| source.above_zero("radius", radius)).transpose()?.unwrap_or(1.0);
+        let tube = entry.tube.as_ref().map(|tube| source.above_zero("tube", tube)).transpose()?.unwrap_or(radius * 0.3);
+        let segments = entry.segments.as_ref().map(|segments| *segments.get_ref());
+        let triangles = entry.triangles.as_ref().map_or(10_000, |triangles| *triangles.get_ref());
+        let seed = u64::from(entry.seed.unwrap_or(1));
+        let size = |count: usize| match entry.size.as_deref() {
+            None => Ok(vec![1.0; count]),
+            Some(size) if size.len() == count => Ok(size.iter().map(|value| value.0).collect()),
+            Some(_) => Err(source.error(at, format!("size of a {} needs {count} numbers", shape.get_ref()))),
+        };
+        let segments_or = |default: u32| segments.unwrap_or(default);
+        let (s, span) = (u64::from(segments.unwrap_or(64)), entry.segments.as_ref().map_or(shape.span(), Spanned::span));
+        let count = match kind {
+            0 | 4 | 5 => s.saturating_mul(s).saturating_mul(4),
+            1 => u64::from(segments_or(1)).saturating_mul(s).saturating_mul(2),
+            6 | 7 => u64::from(triangles),
+            _ => 12,
+        };
+        self.generated = self.generated.saturating_add(count);
+        if count > MAX_GENERATED_TRIANGLES || self.generated > MAX_GENERATED_TOTAL {
+            return Err(source.error_in(
+                span,
+                format!("more than {MAX_GENERATED_TRIANGLES} triangles in a shape, or {MAX_GENERATED_TOTAL} in all; ask for fewer"),
+            ));
+        }
+        let mut mesh = match kind {
+            0 => generate::sphere([0.0; 3], radius, segments_or(64)),
+            1 => {
+                let size = size(2)?;
+                generate::plane([size[0], size[1]], segments_or(1))
+            }
+            2 => {
+                let size = size(3)?;
+                generate::cuboid([size[0], size[1], size[2]])
+            }
+            3 => {
+                let corners = entry.corners.ok_or_else(|| source.error(at, "a quad needs corners = [[x, y, z], ...], four of them"))?;
+                generate::quad(corners.map(plain))
+            }
+            4 => generate::torus(radius, tube, segments_or(64)),
+            5 => generate::knot(radius, tube, segments_or(64)),
+            6 => generate::soup(triangles, seed),
+            _ => generate::bumpy_sphere(triangles, seed),
+        };
+        mesh.name = shape.get_ref().clone();
+        Ok(mesh)
+    }
+}

@@ -1,0 +1,98 @@
+//! From a path to a scene.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::files::{Files, read_file, read_stream};
+use crate::obj_scene::{self, Target};
+use crate::texture::Textures;
+use crate::{Background, Error, Light, LoadOptions, Material, Mesh, RenderDefaults, Result, Scene};
+
+/// Reads a scene: an `.obj` file, or a scene file (`.toml`), or a folder that holds a `scene.toml`.
+///
+/// A scene without lights gets a key and a fill light and a soft gradient as background; one without cameras is framed automatically
+/// ([`Scene::camera`]).
+///
+/// # Errors
+/// Files that cannot be opened, are outside the scene's folder, too large, or malformed: see [`Error`]. Missing or unreadable materials
+/// and textures are no errors; [`Scene::warnings`] lists them.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
+    let inside = path.join("scene.toml");
+    let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    match ending.as_deref() {
+        Some("obj") => {
+            let bytes = read_file(path, options.max_mesh_bytes)?;
+            load_obj(&bytes, path, path.parent(), options)
+        }
+        Some("toml") => crate::description::load(path, options),
+        _ if path.exists() => Err(Error::UnknownFormat { path: path.to_owned() }),
+        // A name that does not exist is told with its neighbours rather than by its ending.
+        _ => read_file(path, 0).and(Err(Error::UnknownFormat { path: path.to_owned() })),
+    }
+}
+
+/// Reads an OBJ stream, such as standard input. Materials are looked for below `folder`; without one none is opened.
+///
+/// # Errors
+/// As [`load`]; the file in messages is `-`.
+pub fn load_reader(reader: &mut dyn Read, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
+    let bytes = read_stream(reader, Path::new("-"), options.max_mesh_bytes)?;
+    load_obj(&bytes, Path::new("-"), folder, options)
+}
+
+fn load_obj(bytes: &[u8], path: &Path, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
+    let files = Files::new(folder, options.allow_external_paths)?;
+    let mut textures = Textures::new(&files, options);
+    let mut materials = vec![Material::default()];
+    let mut warnings = Vec::new();
+    let mut target = Target { files: &files, options, textures: &mut textures, materials: &mut materials, warnings: &mut warnings };
+    let mesh = obj_scene::read(&mut target, bytes, &path.to_string_lossy(), &stem(path), files.root(), 0)?;
+    Ok(with_default_light(Scene { meshes: vec![mesh], materials, textures: textures.textures, warnings, ..empty() }))
+}
+
+/// A mesh from memory as a whole scene, such as those of [`generate`](crate::generate): the default material (whatever numbers
+/// `mesh.materials` holds), the default light, and the automatic camera.
+pub fn scene_of_mesh(mut mesh: Mesh) -> Scene {
+    mesh.materials = vec![0; mesh.indices.len()];
+    with_default_light(Scene { meshes: vec![mesh], materials: vec![Material::default()], ..empty() })
+}
+
+pub(crate) fn empty() -> Scene {
+    Scene { up: [0.0, 1.0, 0.0], defaults: RenderDefaults::default(), ..Scene::default() }
+}
+
+/// The file's name without folder and ending.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "mesh".to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+pub(crate) fn folder_of(path: &Path) -> PathBuf {
+    path.parent().map(Path::to_owned).unwrap_or_default()
+}
+
+/// A key light from the upper left behind the default camera, a weak one from the other side, sky and ground.
+pub(crate) fn with_default_light(mut scene: Scene) -> Scene {
+    scene.lights = default_lights(scene.up);
+    scene.ambient = DEFAULT_AMBIENT;
+    scene.background = DEFAULT_BACKGROUND;
+    scene
+}
+
+pub(crate) const DEFAULT_AMBIENT: [f32; 3] = [0.16, 0.17, 0.19];
+pub(crate) const DEFAULT_BACKGROUND: Background = Background::Gradient { bottom: [0.34, 0.32, 0.30], top: [0.62, 0.72, 0.86] };
+
+pub(crate) fn default_lights(up: [f32; 3]) -> Vec<Light> {
+    use crate::vector::{add, normalised, scale};
+    let (front, side) = crate::frame::front_and_side(up);
+    let up = normalised(up.map(f64::from)).unwrap_or([0.0, 1.0, 0.0]);
+    // Given as the direction towards the light; the light goes the other way.
+    let towards = |right: f64, above: f64, before: f64| {
+        let direction = add(add(scale(side, right), scale(up, above)), scale(front, before));
+        normalised(scale(direction, -1.0)).unwrap_or([0.0, -1.0, 0.0]).map(|value| value as f32)
+    };
+    vec![
+        Light::Directional { direction: towards(-0.25, 0.95, 0.75), irradiance: [2.3, 2.2, 2.05] },
+        Light::Directional { direction: towards(0.9, 0.35, 0.25), irradiance: [0.42, 0.46, 0.55] },
+    ]
+}
