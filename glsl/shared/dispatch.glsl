@@ -7,7 +7,8 @@ const uint MAX_GROUPS_X = 65535u;
 
 uint workgroup_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
-uint invocation_index() { return workgroup_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x; }
+// A macro, since gl_WorkGroupSize is 1 to a function that stands before the declaration of the size.
+#define invocation_index() (workgroup_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 
 // Workgroups for `count` elements, `size` a workgroup, as arguments of an indirect dispatch.
 uvec3 split_workgroups(uint count, uint size) {

@@ -5,7 +5,7 @@ use gridwalk_core::kernel::Kernel;
 
 use crate::error::{Error, Result};
 use crate::kernels::*;
-use crate::plan::{self, Buffer, BuildInputs, Dispatch, Item, MAX_PUSH, Plan, Query, Step};
+use crate::plan::{self, Buffer, BuildInputs, Dispatch, Item, MAX_PUSH, Query, Step};
 use crate::requirements;
 use crate::shape::Shape;
 use crate::sizes::{
@@ -364,11 +364,21 @@ impl Tracer {
             exact: options.overlap == Overlap::Exact,
         };
         let plan = plan::build_plan(capacity, &inputs, &self.shape);
+        // SAFETY: the caller's contract; the plan stays inside of the regions that were checked above.
+        unsafe { self.record(cmd, plan.items(), |buffer| self.build_region(info, buffer), info.timestamps) };
+        Ok(())
+    }
+
+    /// Where a build keeps what.
+    #[doc(hidden)]
+    pub fn build_region(&self, info: &BuildInfo, buffer: Buffer) -> Region {
+        let grid = GridLayout::new(&info.capacity);
+        let scratch = ScratchLayout::new(&info.capacity, &self.shape);
         let in_grid = |part: sizes::Part| info.grid.part(part.offset, part.size);
         let in_scratch = |part: sizes::Part| info.scratch.part(part.offset, part.size);
-        let region = |buffer| match buffer {
-            Buffer::Positions => geometry.positions,
-            Buffer::Indices => geometry.indices,
+        match buffer {
+            Buffer::Positions => info.geometry.positions,
+            Buffer::Indices => info.geometry.indices,
             Buffer::Report => info.report,
             Buffer::Header => in_grid(grid.header),
             Buffer::Cells => in_grid(grid.cells),
@@ -388,10 +398,38 @@ impl Tracer {
             Buffer::Unused | Buffer::Rays | Buffer::Hits | Buffer::RayCount | Buffer::TraceState | Buffer::Walks | Buffer::Counters => {
                 Region::NONE
             }
-        };
-        // SAFETY: the caller's contract; the plan stays inside of the regions that were checked above.
-        unsafe { self.record(cmd, &plan, region, info.timestamps) };
-        Ok(())
+        }
+    }
+
+    /// Records items of a build's plan: for tests that look at what one step did.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_build`], and the items are of a plan for `info`.
+    #[doc(hidden)]
+    pub unsafe fn cmd_build_items(&self, cmd: vk::CommandBuffer, info: &BuildInfo, items: &[Item]) {
+        // SAFETY: the caller's contract.
+        unsafe { self.record(cmd, items, |buffer| self.build_region(info, buffer), None) };
+    }
+
+    /// Records one launch of a kernel with push constants as they are: for tests of single kernels.
+    ///
+    /// # Safety
+    /// The addresses in `push` are those of memory that the kernel may access; otherwise as for [`Tracer::cmd_build`].
+    #[doc(hidden)]
+    pub unsafe fn cmd_kernel(&self, cmd: vk::CommandBuffer, kernel: &'static Kernel, variant: u32, push: &[u8], groups: [u32; 3]) {
+        let Some(pipeline) = self.pipeline(kernel, variant) else { return };
+        // SAFETY: the caller's contract.
+        unsafe {
+            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline);
+            self.device.cmd_push_constants(cmd, self.layout, vk::ShaderStageFlags::COMPUTE, 0, push);
+            self.device.cmd_dispatch(cmd, groups[0], groups[1], groups[2]);
+        }
+    }
+
+    fn pipeline(&self, kernel: &'static Kernel, variant: u32) -> Option<vk::Pipeline> {
+        let found = self.variants.iter().find(|candidate| std::ptr::eq(candidate.kernel, kernel) && candidate.variant == variant);
+        debug_assert!(found.is_some(), "no pipeline of {} {variant}", kernel.name);
+        found.map(|variant| variant.pipeline)
     }
 
     /// Records a search for the closest hit of each ray, in the grid at `grid`, the address of the region it was built in.
@@ -431,7 +469,7 @@ impl Tracer {
         let region = self.trace_regions(grid, info, hit_size)?;
         let plan = plan::trace_plan(query, info.count.max(), matches!(info.count, RayCount::Indirect { .. }));
         // SAFETY: the caller's contract; the plan stays inside of the regions that were checked.
-        unsafe { self.record(cmd, &plan, region, None) };
+        unsafe { self.record(cmd, plan.items(), region, None) };
         Ok(())
     }
 
@@ -518,7 +556,7 @@ impl Tracer {
 
     /// # Safety
     /// The regions hold what the plan's kernels access; otherwise as for [`Tracer::cmd_build`].
-    unsafe fn record(&self, cmd: vk::CommandBuffer, plan: &Plan, region: impl Fn(Buffer) -> Region, timestamps: Option<Timestamps>) {
+    unsafe fn record(&self, cmd: vk::CommandBuffer, items: &[Item], region: impl Fn(Buffer) -> Region, timestamps: Option<Timestamps>) {
         let mut query = timestamps.map(|timestamps| timestamps.first_query);
         let mut stamp = || {
             if let (Some(timestamps), Some(next)) = (timestamps, query.as_mut()) {
@@ -528,12 +566,12 @@ impl Tracer {
             }
         };
         if let Some(timestamps) = timestamps {
-            let count = plan.steps().count() as u32 + 1;
+            let count = items.iter().filter(|item| matches!(item, Item::Step(_))).count() as u32 + 1;
             // SAFETY: as above.
             unsafe { self.device.cmd_reset_query_pool(cmd, timestamps.pool, timestamps.first_query, count) };
         }
         stamp();
-        for item in plan.items() {
+        for item in items {
             match item {
                 Item::Step(step) => {
                     // SAFETY: the caller's contract.
@@ -555,16 +593,11 @@ impl Tracer {
     /// # Safety
     /// As for [`Tracer::record`].
     unsafe fn record_step(&self, cmd: vk::CommandBuffer, step: &Step, region: impl Fn(Buffer) -> Region) {
-        let Some(pipeline) =
-            self.variants.iter().find(|variant| std::ptr::eq(variant.kernel, step.kernel) && variant.variant == step.variant)
-        else {
-            debug_assert!(false, "no pipeline of {} {}", step.kernel.name, step.variant);
-            return;
-        };
+        let Some(pipeline) = self.pipeline(step.kernel, step.variant) else { return };
         let push = step.resolve(|buffer| region(buffer).address);
         // SAFETY: the pipeline lives as long as the tracer; the addresses are those of regions that were checked.
         unsafe {
-            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline.pipeline);
+            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline);
             self.device.cmd_push_constants(cmd, self.layout, vk::ShaderStageFlags::COMPUTE, 0, &push);
             match step.dispatch {
                 Dispatch::Direct([x, y, z]) => self.device.cmd_dispatch(cmd, x, y, z),

@@ -1,0 +1,293 @@
+//! A device, grids built on it in guarded memory, and rays traced through them. The only module of the tests that records commands.
+
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+use gridwalk::ash::vk;
+use gridwalk::{
+    BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, Hit, Ray, RayCount, Region, Report, TraceInfo, Tracer, cmd_barrier,
+};
+use gridwalk_core::layout::GridHeader;
+use gridwalk_render::{Buffer, BufferDesc, BufferKind, Context, ContextDesc};
+
+/// Triangles as the library takes them.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    pub positions: Vec<[f32; 3]>,
+    pub indices: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// Three vertices of each triangle, which none shares.
+    pub fn from_triangles(triangles: &[[[f32; 3]; 3]]) -> Mesh {
+        let positions = triangles.iter().flatten().copied().collect();
+        let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Mesh { positions, indices }
+    }
+
+    /// The vertices of a triangle.
+    pub fn triangle(&self, index: usize) -> [[f32; 3]; 3] {
+        self.indices[index].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// Room for the mesh at any density up to 8 or so.
+    pub fn capacity(&self) -> Capacity {
+        let triangles = self.indices.len() as u32;
+        Capacity { triangles, cells: 16 * triangles + 64, pairs: 16 * triangles + 4096 }
+    }
+}
+
+/// The device of the tests. Validation is on unless `GRIDWALK_VALIDATE=0`; each message fails the test that asks next.
+pub struct Gpu {
+    pub context: Context,
+    pub tracer: Tracer,
+}
+
+/// A word that no test writes.
+pub const CANARY: u32 = 0xDEAD_BEEF;
+const GUARD: u64 = 256;
+
+/// Memory with canary words before and behind it.
+pub struct Guarded {
+    buffer: Buffer,
+    size: u64,
+}
+
+impl Guarded {
+    pub fn region(&self) -> Region {
+        Region { buffer: self.buffer.raw(), offset: GUARD, size: self.size, address: self.buffer.address() + GUARD }
+    }
+
+    pub fn read<T: bytemuck::Pod>(&self, offset: u64, count: usize) -> Vec<T> {
+        self.buffer.read(GUARD + offset, count).unwrap()
+    }
+
+    pub fn write<T: bytemuck::Pod>(&self, offset: u64, data: &[T]) {
+        self.buffer.write(GUARD + offset, data).unwrap();
+    }
+
+    /// Fails if a word before or behind the memory was written.
+    pub fn check(&self) {
+        let words = (GUARD / 4) as usize;
+        let behind = GUARD + self.size.next_multiple_of(4);
+        for (side, offset) in [("before", 0), ("behind", behind)] {
+            let guard: Vec<u32> = self.buffer.read(offset, words).unwrap();
+            let hit = guard.iter().position(|word| *word != CANARY);
+            assert_eq!(hit, None, "{}: a word {side} the region was written: {guard:x?}", self.buffer.name());
+        }
+    }
+}
+
+/// A grid on the device, and the memory around it.
+pub struct Built {
+    pub info: BuildInfo,
+    pub report: Report,
+    pub grid: Guarded,
+    pub scratch: Guarded,
+    pub report_memory: Guarded,
+    pub positions: Guarded,
+    pub indices: Guarded,
+}
+
+impl Built {
+    pub fn header(&self) -> GridHeader {
+        self.grid.read(0, 1)[0]
+    }
+
+    /// Begin and end of each cell's list.
+    pub fn cells(&self) -> Vec<[u32; 2]> {
+        let header = self.header();
+        self.grid.read(self.offset(header.cells), header.cell_count as usize)
+    }
+
+    /// The lists of all cells, one after another.
+    pub fn references(&self) -> Vec<u32> {
+        self.grid.read(self.offset(self.header().references), self.report.pairs as usize)
+    }
+
+    /// Three vertices of four components a triangle, in the grid's frame.
+    pub fn triangles(&self) -> Vec<[[f32; 4]; 3]> {
+        let header = self.header();
+        self.grid.read(self.offset(header.triangles), header.triangle_count as usize)
+    }
+
+    /// What a part of the build's memory holds.
+    pub fn part<T: bytemuck::Pod>(&self, gpu: &Gpu, buffer: gridwalk::plan::Buffer, count: usize) -> Vec<T> {
+        let region = gpu.tracer.build_region(&self.info, buffer);
+        let memory =
+            [&self.grid, &self.scratch, &self.report_memory].into_iter().find(|memory| memory.region().buffer == region.buffer).unwrap();
+        memory.read(region.offset - GUARD, count)
+    }
+
+    pub fn check_guards(&self) {
+        for memory in [&self.grid, &self.scratch, &self.report_memory, &self.positions, &self.indices] {
+            memory.check();
+        }
+    }
+
+    fn offset(&self, address: [u32; 2]) -> u64 {
+        (u64::from(address[0]) | u64::from(address[1]) << 32) - self.grid.region().address
+    }
+}
+
+impl Gpu {
+    /// The device that all tests of a process share.
+    pub fn shared() -> &'static Gpu {
+        static GPU: OnceLock<Gpu> = OnceLock::new();
+        GPU.get_or_init(|| Gpu::new(None))
+    }
+
+    /// A device of its own, with kernels cut as asked.
+    pub fn new(shape: Option<gridwalk::Shape>) -> Gpu {
+        let validation = std::env::var("GRIDWALK_VALIDATE").map_or(true, |value| value != "0");
+        let context = Context::new(&ContextDesc { validation, name: "tests", ..ContextDesc::default() }).unwrap();
+        let desc = DeviceDesc {
+            instance: context.instance(),
+            physical_device: context.physical_device(),
+            device: context.device(),
+            pipeline_cache: vk::PipelineCache::null(),
+            shape,
+        };
+        // SAFETY: the handles are of each other, and the context is dropped after the tracer, being declared before it... see Drop.
+        let tracer = unsafe { Tracer::new(&desc) }.unwrap();
+        Gpu { context, tracer }
+    }
+
+    /// Fails if the validation layers have said anything since the last call.
+    pub fn check_validation(&self) {
+        static ONE: Mutex<()> = Mutex::new(());
+        let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let messages = self.context.take_validation_messages();
+        assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
+    }
+
+    /// Memory filled with canary words, guards included.
+    pub fn guarded(&self, name: &str, size: u64) -> Guarded {
+        let whole = GUARD + size.next_multiple_of(4) + GUARD;
+        let buffer = self.context.buffer(&BufferDesc { name, size: whole, kind: BufferKind::Device, dedicated: false }).unwrap();
+        buffer.write(0, &vec![CANARY; (whole / 4) as usize]).unwrap();
+        Guarded { buffer, size }
+    }
+
+    /// Guarded memory that holds `data`.
+    pub fn upload<T: bytemuck::Pod>(&self, name: &str, data: &[T]) -> Guarded {
+        let memory = self.guarded(name, (size_of_val(data) as u64).max(4));
+        memory.write(0, data);
+        memory
+    }
+
+    /// Records, submits and waits.
+    pub fn submit(&self, record: impl FnOnce(vk::CommandBuffer)) {
+        let submitted = self.context.submit("test", |cmd| {
+            record(cmd);
+            Ok(())
+        });
+        submitted.unwrap();
+    }
+
+    /// Memory for a build of a mesh, which is not built yet.
+    pub fn prepare(&self, mesh: &Mesh, capacity: Capacity, options: BuildOptions) -> Built {
+        let sizes = self.tracer.build_sizes(&capacity).unwrap();
+        let positions = self.upload("positions", &mesh.positions);
+        let indices = self.upload("indices", &mesh.indices);
+        let grid = self.guarded("grid", sizes.grid.size);
+        let scratch = self.guarded("scratch", sizes.scratch.size);
+        let report_memory = self.guarded("report", sizes.report.size);
+        let geometry = Geometry {
+            positions: positions.region(),
+            vertex_count: mesh.positions.len() as u32,
+            indices: indices.region(),
+            triangle_count: mesh.indices.len() as u32,
+        };
+        let info = BuildInfo {
+            geometry,
+            grid: grid.region(),
+            scratch: scratch.region(),
+            report: report_memory.region(),
+            capacity,
+            options,
+            timestamps: None,
+        };
+        Built { info, report: bytemuck::Zeroable::zeroed(), grid, scratch, report_memory, positions, indices }
+    }
+
+    /// Builds, or builds again, and checks the guards.
+    pub fn rebuild(&self, built: &mut Built) {
+        self.submit(|cmd| {
+            // SAFETY: all memory of the build lives in `built`, and the submission is waited for.
+            unsafe {
+                self.tracer.cmd_build(cmd, &built.info).unwrap();
+                cmd_barrier(self.context.device(), cmd, Tracer::BUILD, Tracer::TRACE);
+            }
+        });
+        built.report = built.report_memory.read(0, 1)[0];
+        built.check_guards();
+        self.check_validation();
+    }
+
+    /// A grid over a mesh.
+    pub fn build(&self, mesh: &Mesh, capacity: Capacity, options: BuildOptions) -> Built {
+        let mut built = self.prepare(mesh, capacity, options);
+        self.rebuild(&mut built);
+        built
+    }
+
+    /// The closest hits of rays.
+    pub fn closest(&self, built: &Built, rays: &[Ray]) -> Vec<Hit> {
+        self.trace(built, rays, |cmd, grid, info| {
+            // SAFETY: see `trace`.
+            unsafe { self.tracer.cmd_closest_hit(cmd, grid, info) }
+        })
+    }
+
+    /// Whether rays hit anything.
+    pub fn any(&self, built: &Built, rays: &[Ray]) -> Vec<u32> {
+        self.trace(built, rays, |cmd, grid, info| {
+            // SAFETY: see `trace`.
+            unsafe { self.tracer.cmd_any_hit(cmd, grid, info) }
+        })
+    }
+
+    /// The closest hits by testing all triangles.
+    pub fn brute_force(&self, built: &Built, rays: &[Ray]) -> Vec<Hit> {
+        let triangle_count = built.info.geometry.triangle_count;
+        self.trace(built, rays, |cmd, grid, info| {
+            // SAFETY: see `trace`.
+            unsafe { self.tracer.cmd_brute_force(cmd, grid, triangle_count, info) }
+        })
+    }
+
+    /// The closest hits by a shader that uses the public include.
+    pub fn closest_by_include(&self, built: &Built, rays: &[Ray]) -> Vec<Hit> {
+        self.trace(built, rays, |cmd, grid, info| {
+            // SAFETY: see `trace`.
+            unsafe { self.tracer.cmd_closest_candidate(cmd, grid, info) }
+        })
+    }
+
+    /// Traces with guarded memory that lives until the submission has ended.
+    pub fn trace<T: bytemuck::Pod>(
+        &self,
+        built: &Built,
+        rays: &[Ray],
+        record: impl FnOnce(vk::CommandBuffer, vk::DeviceAddress, &TraceInfo) -> gridwalk::Result<()>,
+    ) -> Vec<T> {
+        let count = rays.len() as u32;
+        let ray_memory = self.upload("rays", rays);
+        let hits = self.guarded("hits", (rays.len() * size_of::<T>()).max(4) as u64);
+        let scratch = self.guarded("trace scratch", self.tracer.trace_scratch_size(count).unwrap().size);
+        let info = TraceInfo {
+            rays: ray_memory.region(),
+            hits: hits.region(),
+            count: RayCount::Direct(count),
+            scratch: scratch.region(),
+            resume: false,
+            counters: None,
+        };
+        self.submit(|cmd| record(cmd, built.grid.region().address, &info).unwrap());
+        for memory in [&ray_memory, &hits, &scratch, &built.grid] {
+            memory.check();
+        }
+        self.check_validation();
+        hits.read(0, rays.len())
+    }
+}
