@@ -94,3 +94,10 @@ pub enum Error {
         b: String,
     },
 }
+
+impl Error {
+    /// An error of writing `path`, with the cure that fits what the system said.
+    pub fn write(path: &std::path::Path, source: std::io::Error) -> Error {
+        super::file::write_error(path, source)
+    }
+}

@@ -1,0 +1,5 @@
+//! The command line.
+
+pub mod high;
+pub mod low;
+mod values;

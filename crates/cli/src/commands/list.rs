@@ -1,0 +1,63 @@
+//! `gridwalk list`, and the options of `render` that do the same.
+
+use std::fmt::Write;
+
+use gridwalk_render::image::{Format, Tonemap};
+
+use crate::aov::Aov;
+use crate::args::high::{Source, load_options};
+use crate::args::low::{Limits, List, Listed};
+use crate::exit::{Exit, Failure, Result};
+use crate::{output, scene};
+
+/// Lists what options can be set to: a name, a tab, and what it is.
+pub fn run(low: &List) -> Result<Exit> {
+    match low.what {
+        Listed::Cameras => {
+            let path = low.scene.as_ref().ok_or_else(|| Failure::usage("cameras of which scene? gridwalk list cameras SCENE"))?;
+            cameras(&Source::new(path), &low.limits)
+        }
+        Listed::Aovs => aovs(),
+        Listed::Tonemaps => tonemaps(),
+        Listed::Formats => formats(),
+        Listed::Devices => super::devices::run(false),
+    }
+}
+
+pub fn cameras(source: &Source, limits: &Limits) -> Result<Exit> {
+    let scene = scene::read(source, &load_options(limits))?;
+    let lines = scene.cameras.iter().enumerate().map(|(index, named)| {
+        let [x, y, z] = named.camera.eye;
+        (named.name.clone(), format!("number {index}, at {x} {y} {z}"))
+    });
+    print(lines)
+}
+
+pub fn aovs() -> Result<Exit> {
+    print(Aov::ALL.into_iter().map(|aov| (aov.name().to_owned(), aov.description().to_owned())))
+}
+
+pub fn tonemaps() -> Result<Exit> {
+    print(Tonemap::ALL.into_iter().map(|tonemap| (tonemap.name().to_owned(), tonemap.description().to_owned())))
+}
+
+pub fn formats() -> Result<Exit> {
+    let read = [
+        ("obj", "read: Wavefront OBJ, with its MTL; textures PNG, JPEG, TGA"),
+        ("toml", "read: a scene of gridwalk: meshes, cameras, lights, background"),
+        ("npy", "read by cast: rays, float32"),
+        ("npz", "written by cast: hits"),
+    ];
+    let read = read.into_iter().map(|(name, what)| (name.to_owned(), what.to_owned()));
+    print(Format::ALL.into_iter().map(|format| (format.extension().to_owned(), format!("written: {}", format.description()))).chain(read))
+}
+
+fn print(lines: impl Iterator<Item = (String, String)>) -> Result<Exit> {
+    let text = lines.fold(String::new(), |mut text, (name, what)| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name}\t{what}");
+        text
+    });
+    output::print(&text)?;
+    Ok(Exit::Ok)
+}
