@@ -10,6 +10,7 @@ use gpu_allocator::{
     AllocationError, AllocationSizes, AllocatorDebugSettings, MemoryLocation,
     vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc},
 };
+use gridwalk::Region;
 use std::{
     ffi::CString,
     fmt,
@@ -265,7 +266,8 @@ impl Context {
         let mut buffer =
             Buffer { shared: Arc::clone(&self.shared), name: desc.name.to_owned(), raw, size, address: 0, allocation: None, counted: 0 };
         // SAFETY: the buffer belongs to this device.
-        let requirements = unsafe { device.get_buffer_memory_requirements(raw) };
+        let mut requirements = unsafe { device.get_buffer_memory_requirements(raw) };
+        requirements.alignment = requirements.alignment.max(gridwalk::REGION_ALIGNMENT);
         let location = match desc.kind {
             BufferKind::Device => MemoryLocation::GpuOnly,
             BufferKind::Upload => MemoryLocation::CpuToGpu,
@@ -518,6 +520,11 @@ impl Buffer {
     /// Device address of the first byte.
     pub fn address(&self) -> vk::DeviceAddress {
         self.address
+    }
+
+    /// The whole buffer as a region for the library.
+    pub fn region(&self) -> Region {
+        Region { buffer: self.raw, offset: 0, size: self.size, address: self.address }
     }
 
     /// Name, as given.

@@ -137,6 +137,8 @@ pub struct DeviceLimits {
     pub subgroup_size: u32,
     /// Nanoseconds of one tick of a timestamp; 0 when the queue has none.
     pub timestamp_period_ns: f32,
+    /// Bits of a timestamp; 0 when the queue has none.
+    pub timestamp_bits: u32,
 }
 
 /// A Vulkan device, and what it lacks to serve.
@@ -319,28 +321,21 @@ impl Instance {
         let mut vulkan12 = vk::PhysicalDeviceVulkan12Properties::default();
         let mut vulkan13 = vk::PhysicalDeviceVulkan13Properties::default();
         let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
-        let mut features13 = vk::PhysicalDeviceVulkan13Features::default();
         if core.api_version >= vk::API_VERSION_1_3 {
             let mut properties =
                 vk::PhysicalDeviceProperties2::default().push_next(&mut vulkan11).push_next(&mut vulkan12).push_next(&mut vulkan13);
-            let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut features12).push_next(&mut features13);
+            let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut features12);
             // SAFETY: the handle comes from this instance; the device knows Vulkan 1.3 and so every struct of both chains.
             unsafe {
                 self.raw.get_physical_device_properties2(handle, &mut properties);
                 self.raw.get_physical_device_features2(handle, &mut features);
             }
-            if features12.buffer_device_address == vk::FALSE {
-                unsuitable.push("feature bufferDeviceAddress".to_owned());
-            }
-            if features13.synchronization2 == vk::FALSE {
-                unsuitable.push("feature synchronization2".to_owned());
-            }
             if features12.timeline_semaphore == vk::FALSE {
                 unsuitable.push("feature timelineSemaphore".to_owned());
             }
-        } else {
-            unsuitable.push(format!("Vulkan 1.3 (it has {}.{})", api[0], api[1]));
         }
+        // SAFETY: the handle comes from this instance, which was made for Vulkan 1.3.
+        unsuitable.extend(unsafe { gridwalk::requirements::query(&self.raw, handle) }.missing);
 
         // SAFETY: the handle comes from this instance.
         let families = unsafe { self.raw.get_physical_device_queue_family_properties(handle) };
@@ -349,7 +344,7 @@ impl Instance {
             .iter()
             .position(|family| computes(family) && family.timestamp_valid_bits > 0)
             .or_else(|| families.iter().position(computes));
-        let timestamps = family.and_then(|family| families.get(family)).is_some_and(|family| family.timestamp_valid_bits > 0);
+        let timestamp_bits = family.and_then(|family| families.get(family)).map_or(0, |family| family.timestamp_valid_bits);
         if family.is_none() {
             unsuitable.push("a queue for compute".to_owned());
         }
@@ -397,7 +392,8 @@ impl Instance {
                 workgroup_count: core.limits.max_compute_work_group_count,
                 push_constant_bytes: core.limits.max_push_constants_size,
                 subgroup_size: vulkan11.subgroup_size,
-                timestamp_period_ns: if timestamps { core.limits.timestamp_period } else { 0.0 },
+                timestamp_bits,
+                timestamp_period_ns: if timestamp_bits > 0 { core.limits.timestamp_period } else { 0.0 },
             },
             unsuitable,
         };

@@ -92,6 +92,34 @@ pub enum Error {
         /// End of the bytes asked for.
         end: u64,
     },
+    /// The library refused what it was asked to record.
+    #[error(transparent)]
+    Gridwalk(#[from] gridwalk::Error),
+    /// The grid does not fit into what the device has or the library can hold.
+    #[error("the grid needs {pairs} pairs of a cell and a triangle, more than can be held: lower the density or the resolution")]
+    TooDense {
+        /// Pairs that the build counted; 4294967295 stands for that many or more.
+        pairs: u32,
+    },
+    /// A scene cannot be brought to the device.
+    #[error("the scene cannot be used: {reason}")]
+    Scene {
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A setting has no meaning.
+    #[error("{setting} = {value}: {expected}")]
+    Setting {
+        /// Its name.
+        setting: &'static str,
+        /// What was given.
+        value: String,
+        /// What is possible.
+        expected: &'static str,
+    },
+    /// The progress callback asked to stop.
+    #[error("interrupted")]
+    Interrupted,
     /// A layer does not fit the picture.
     #[error("layer {name}: {reason}")]
     Layer {

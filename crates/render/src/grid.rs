@@ -1,0 +1,343 @@
+//! A grid with its memory: sized, built, grown when it turns out too small.
+
+use crate::{
+    Buffer, BufferDesc, BufferKind, Context, Error, GpuScene, Result,
+    pipeline::{StepTime, add_step},
+    queries::Queries,
+};
+use ash::vk;
+use gridwalk::{BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, MAX_CELLS, MAX_PAIRS, Overlap, Report, Tracer};
+use std::sync::Arc;
+
+/// How a grid is to be built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BuildSettings {
+    /// Density k of Equation 3-1 of the thesis: cells a triangle. Lowered where the grid would not fit; the report says to what.
+    pub density: f32,
+    /// Cells along each axis, instead of the density.
+    pub resolution: Option<[u32; 3]>,
+    /// Which cells list a triangle.
+    pub overlap: Overlap,
+}
+
+impl Default for BuildSettings {
+    fn default() -> Self {
+        let BuildOptions { density, resolution, overlap } = BuildOptions::default();
+        BuildSettings { density, resolution, overlap }
+    }
+}
+
+/// What a build took and made.
+#[derive(Clone, Debug)]
+pub struct BuildStats {
+    /// What the device reported.
+    pub report: Report,
+    /// Device milliseconds of the build; 0 without timestamps.
+    pub ms: f64,
+    /// Device milliseconds of its steps, those of one kernel summed.
+    pub steps: Vec<StepTime>,
+    /// Bytes of the grid, with its copy of the triangles.
+    pub grid_bytes: u64,
+    /// Bytes of the build's scratch.
+    pub scratch_bytes: u64,
+    /// How often it was built until it fit: 1 unless the memory had to grow.
+    pub attempts: u32,
+}
+
+/// Makes grids on a device.
+#[derive(Clone)]
+pub struct GridBuilder {
+    engine: Arc<Engine>,
+}
+
+/// The library's pipelines, and the device that they must not outlive.
+struct Engine {
+    /// `None` only while dropping.
+    tracer: Option<Tracer>,
+    context: Context,
+}
+
+impl Drop for Engine {
+    fn drop(&mut self) {
+        let mut tracer = self.tracer.take();
+        self.context.destroy(|_| drop(tracer.take()));
+        // Still there under a device that never came back: given up, as all else.
+        std::mem::forget(tracer);
+    }
+}
+
+/// A grid in device memory, ready for rays.
+pub struct Grid {
+    engine: Arc<Engine>,
+    settings: BuildSettings,
+    capacity: Capacity,
+    grid: Buffer,
+    scratch: Option<Buffer>,
+    report: Buffer,
+    queries: Queries,
+    query_count: u32,
+    stats: BuildStats,
+}
+
+/// How many pairs a triangle are reckoned with before the first count is known.
+const FIRST_PAIRS_EACH: u64 = 4;
+
+/// Builds that are tried at ever lower densities when a grid does not fit.
+const MAX_ATTEMPTS: u32 = 12;
+
+impl std::fmt::Debug for GridBuilder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GridBuilder").field("context", &self.engine.context).finish()
+    }
+}
+
+impl std::fmt::Debug for Grid {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Grid").field("capacity", &self.capacity).field("stats", &self.stats).finish_non_exhaustive()
+    }
+}
+
+impl GridBuilder {
+    /// Makes the library's pipelines.
+    ///
+    /// # Errors
+    /// [`Error::Gridwalk`].
+    pub fn new(context: &Context) -> Result<GridBuilder> {
+        let desc = DeviceDesc {
+            instance: context.instance(),
+            physical_device: context.physical_device(),
+            device: context.device(),
+            pipeline_cache: context.pipeline_cache(),
+            shape: None,
+        };
+        // SAFETY: the handles belong to one living context, which has the required features enabled; the engine keeps it alive beyond the
+        // tracer; every submission is waited for before anything is dropped.
+        let tracer = unsafe { Tracer::new(&desc) }?;
+        Ok(GridBuilder { engine: Arc::new(Engine { tracer: Some(tracer), context: context.clone() }) })
+    }
+
+    /// The context of the builder.
+    pub fn context(&self) -> &Context {
+        &self.engine.context
+    }
+
+    /// Builds a grid over a scene.
+    ///
+    /// # Errors
+    /// [`Error::TooDense`] when not even a low density fits, or when a fixed resolution does not; [`Error::OutOfDeviceMemory`];
+    /// [`Error::Gridwalk`] for settings without a meaning; those of [`Context::submit`].
+    pub fn build(&self, scene: &GpuScene, settings: &BuildSettings) -> Result<Grid> {
+        let geometry = geometry(scene);
+        let mut settings = *settings;
+        let first_pairs = u64::from(geometry.triangle_count) * FIRST_PAIRS_EACH + 1024;
+        let mut pairs = first_pairs;
+        let mut needed = u32::MAX;
+        for attempts in 1..=MAX_ATTEMPTS {
+            let capacity = Capacity {
+                triangles: geometry.triangle_count,
+                cells: cell_capacity(geometry.triangle_count, &settings)?,
+                pairs: u32::try_from(pairs).unwrap_or(u32::MAX).min(MAX_PAIRS),
+            };
+            let mut grid = match self.allocate(capacity, settings) {
+                Ok(grid) => grid,
+                // Fewer cells need fewer pairs: a coarser grid is better than none.
+                Err(Error::OutOfDeviceMemory { .. } | Error::Gridwalk(gridwalk::Error::DeviceLimit { .. }))
+                    if settings.resolution.is_none() && attempts > 1 && attempts < MAX_ATTEMPTS =>
+                {
+                    settings.density /= 8.0;
+                    pairs = first_pairs;
+                    continue;
+                }
+                Err(error) => return Err(error),
+            };
+            grid.run(&geometry)?;
+            grid.stats.attempts = attempts;
+            let report = &grid.stats.report;
+            if !report.pairs_overflowed() {
+                return Ok(grid);
+            }
+            needed = report.pair_total;
+            match report.needed_pairs().filter(|&pairs| pairs <= MAX_PAIRS) {
+                Some(needed) => pairs = u64::from(needed),
+                None if settings.resolution.is_some() => break,
+                None => {
+                    settings.density = report.density / 8.0;
+                    pairs = first_pairs;
+                }
+            }
+        }
+        Err(Error::TooDense { pairs: needed })
+    }
+
+    fn allocate(&self, capacity: Capacity, settings: BuildSettings) -> Result<Grid> {
+        let context = &self.engine.context;
+        let sizes = self.engine.tracer()?.build_sizes(&capacity)?;
+        let buffer = |name, size, kind, dedicated| context.buffer(&BufferDesc { name, size, kind, dedicated });
+        let grid = buffer("grid", sizes.grid.size, BufferKind::Device, true)?;
+        let scratch = buffer("build scratch", sizes.scratch.size, BufferKind::Device, true)?;
+        Ok(Grid {
+            stats: BuildStats {
+                report: bytemuck::Zeroable::zeroed(),
+                ms: 0.0,
+                steps: Vec::new(),
+                grid_bytes: grid.size(),
+                scratch_bytes: scratch.size(),
+                attempts: 1,
+            },
+            report: buffer("build report", sizes.report.size, BufferKind::Readback, false)?,
+            queries: Queries::new(context, sizes.timestamp_count)?,
+            query_count: sizes.timestamp_count,
+            engine: Arc::clone(&self.engine),
+            settings,
+            capacity,
+            grid,
+            scratch: Some(scratch),
+        })
+    }
+}
+
+impl Engine {
+    fn tracer(&self) -> Result<&Tracer> {
+        self.tracer.as_ref().ok_or(Error::DeviceLost)
+    }
+}
+
+impl Grid {
+    /// What the last build took and made.
+    pub fn stats(&self) -> &BuildStats {
+        &self.stats
+    }
+
+    /// The settings that it was built with; the density may have been lowered until the grid fitted.
+    pub fn settings(&self) -> &BuildSettings {
+        &self.settings
+    }
+
+    /// What the memory has room for.
+    pub fn capacity(&self) -> &Capacity {
+        &self.capacity
+    }
+
+    /// The address that stands for the whole grid.
+    pub fn address(&self) -> vk::DeviceAddress {
+        self.grid.address()
+    }
+
+    /// The grid's memory, for checks of what a build has made.
+    pub fn buffer(&self) -> &Buffer {
+        &self.grid
+    }
+
+    /// The context of the grid.
+    pub fn context(&self) -> &Context {
+        &self.engine.context
+    }
+
+    /// The library's recorder, for traces of the caller's own.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`] while the device is being given up.
+    pub fn tracer(&self) -> Result<&Tracer> {
+        self.engine.tracer()
+    }
+
+    /// Frees the memory of the build. The next [`Grid::rebuild`] takes it anew.
+    pub fn free_scratch(&mut self) {
+        self.scratch = None;
+    }
+
+    /// Builds again from nothing, in the same memory where it suffices: after the scene's vertices changed, or to measure.
+    ///
+    /// # Errors
+    /// As [`GridBuilder::build`].
+    pub fn rebuild(&mut self, scene: &GpuScene) -> Result<()> {
+        let geometry = geometry(scene);
+        let builder = GridBuilder { engine: Arc::clone(&self.engine) };
+        if geometry.triangle_count <= self.capacity.triangles {
+            if self.scratch.is_none() {
+                let size = self.engine.tracer()?.build_sizes(&self.capacity)?.scratch.size;
+                let desc = BufferDesc { name: "build scratch", size, kind: BufferKind::Device, dedicated: true };
+                self.scratch = Some(self.engine.context.buffer(&desc)?);
+            }
+            self.run(&geometry)?;
+            self.stats.attempts = 1;
+            if !self.stats.report.pairs_overflowed() {
+                return Ok(());
+            }
+        }
+        let settings = self.settings;
+        // The old memory goes first: the new one may not fit beside it.
+        self.scratch = None;
+        *self = builder.build(scene, &settings)?;
+        Ok(())
+    }
+
+    fn run(&mut self, geometry: &Geometry) -> Result<()> {
+        let Some(scratch) = &self.scratch else { return Ok(()) };
+        let BuildSettings { density, resolution, overlap } = self.settings;
+        let info = BuildInfo {
+            geometry: *geometry,
+            grid: self.grid.region(),
+            scratch: scratch.region(),
+            report: self.report.region(),
+            capacity: self.capacity,
+            options: BuildOptions { density, resolution, overlap },
+            timestamps: self.queries.timestamps(),
+        };
+        let tracer = self.engine.tracer()?;
+        self.engine.context.submit("build", |cmd| {
+            // SAFETY: the command buffer is recording on the tracer's device and queue; the regions are whole buffers of that device with
+            // all usages, and live until the submission was waited for; the pool holds as many queries as the sizes ask for. Whatever wrote
+            // the geometry was submitted and waited for before.
+            Ok(unsafe { tracer.cmd_build(cmd, &info) }?)
+        })?;
+        if let Some(report) = self.report.read::<Report>(0, 1)?.first() {
+            self.stats.report = *report;
+        }
+        let stamps = self.queries.read(self.query_count)?;
+        self.stats.steps.clear();
+        self.stats.ms = 0.0;
+        for (kernel, pair) in tracer.build_steps(&self.capacity).iter().zip(stamps.windows(2)) {
+            let ms = self.queries.milliseconds(pair[0], pair[1]);
+            self.stats.ms += ms;
+            add_step(&mut self.stats.steps, StepTime { name: kernel.name, kind: kernel.kind.name(), ms, count: 1 });
+        }
+        Ok(())
+    }
+}
+
+fn geometry(scene: &GpuScene) -> Geometry {
+    Geometry {
+        positions: scene.positions.region(),
+        vertex_count: scene.vertex_count(),
+        indices: scene.indices.region(),
+        triangle_count: scene.triangle_count(),
+    }
+}
+
+/// Cells that Equation 3-1 asks for, with room for its rounding along each axis; a build lowers the density to what is there.
+fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<u32> {
+    let cells = match settings.resolution {
+        Some(resolution) => {
+            let cells = resolution.iter().map(|&cells| u64::from(cells)).fold(1_u64, u64::saturating_mul);
+            if cells > u64::from(MAX_CELLS) {
+                return Err(Error::Setting {
+                    setting: "resolution",
+                    value: resolution.map(|cells| cells.to_string()).join(" x "),
+                    expected: "at most 268,435,456 cells in all",
+                });
+            }
+            cells
+        }
+        None => {
+            if !(settings.density > 0.0 && settings.density.is_finite()) {
+                return Err(Error::Setting { setting: "density", value: settings.density.to_string(), expected: "a number above 0" });
+            }
+            (f64::from(triangles) * f64::from(settings.density) * CELL_ROOM) as u64 + 64
+        }
+    };
+    Ok(u32::try_from(cells).unwrap_or(u32::MAX).min(MAX_CELLS))
+}
+
+/// Room for a resolution that rounds to more cells than the density says.
+const CELL_ROOM: f64 = 1.25;

@@ -1,0 +1,150 @@
+//! Push constants of the kernels; the generated table asserts their layout. Addresses are device addresses.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Of kernel `flag_downsweep`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct FlagDownsweep {
+    pub(crate) queue: u64,
+    pub(crate) flags: u64,
+    pub(crate) sums: u64,
+    pub(crate) offsets: u64,
+}
+
+/// Of kernel `flag_reduce`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct FlagReduce {
+    pub(crate) queue: u64,
+    pub(crate) flags: u64,
+    pub(crate) sums: u64,
+}
+
+/// Of kernel `flag_spine`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct FlagSpine {
+    pub(crate) queue: u64,
+    pub(crate) sums: u64,
+    pub(crate) next: u64,
+}
+
+/// Of kernel `camera_rays`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CameraRays {
+    pub(crate) camera: u64,
+    pub(crate) rays: u64,
+    pub(crate) paths: u64,
+    pub(crate) first_pixel: u32,
+    pub(crate) pixel_count: u32,
+    pub(crate) sample_offset: [f32; 2],
+}
+
+/// Of kernel `first_hit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct FirstHit {
+    pub(crate) scene: u64,
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) records: u64,
+}
+
+/// Of kernel `light_add`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LightAdd {
+    pub(crate) queue: u64,
+    pub(crate) paths: u64,
+    pub(crate) occluded: u64,
+    pub(crate) film: u64,
+    pub(crate) unfinished: u64,
+}
+
+/// Of kernel `light_count`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LightCount {
+    pub(crate) scene: u64,
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) surfaces: u64,
+    pub(crate) shadows: u64,
+    pub(crate) light: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `light_emit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LightEmit {
+    pub(crate) scene: u64,
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) surfaces: u64,
+    pub(crate) paths: u64,
+    pub(crate) shadows: u64,
+    pub(crate) offsets: u64,
+    pub(crate) shadow_rays: u64,
+    pub(crate) shadow_paths: u64,
+    pub(crate) light: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `masked_any_hit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct MaskedAnyHit {
+    pub(crate) grid: u64,
+    pub(crate) scene: u64,
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) occluded: u64,
+    pub(crate) walks: u64,
+}
+
+/// Of kernel `masked_closest_hit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct MaskedClosestHit {
+    pub(crate) grid: u64,
+    pub(crate) scene: u64,
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) walks: u64,
+}
+
+/// Of kernel `reflect_emit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ReflectEmit {
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) surfaces: u64,
+    pub(crate) paths: u64,
+    pub(crate) reflects: u64,
+    pub(crate) offsets: u64,
+    pub(crate) next_rays: u64,
+    pub(crate) next_paths: u64,
+}
+
+/// Of kernel `shade`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Shade {
+    pub(crate) scene: u64,
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) paths: u64,
+    pub(crate) film: u64,
+    pub(crate) surfaces: u64,
+    pub(crate) reflects: u64,
+    pub(crate) unfinished: u64,
+    pub(crate) flags: u32,
+    pub(crate) padding: u32,
+}

@@ -1,0 +1,727 @@
+//! The frame as a wavefront: queues of rays of one kind, one bounce a dispatch (thesis section 3.4).
+//!
+//! A batch of pixels goes through these steps, sample by sample: camera rays; closest hit; shade; then for each light: flag what it may
+//! reach, compact, any hit, add; then compact what reflects into the next bounce's queue. Every step but the compaction is a map.
+
+use crate::{
+    Aov, Buffer, BufferDesc, BufferKind, Context, Crop, Error, Frame, FrameStats, GpuScene, Grid, Layer, LayerData, Layers, Progress,
+    RenderSettings, Result, kernels,
+    layout::{CameraFrame, Film, FirstHitRecord, Path, QueueHeader, Surface},
+    pipeline::{MAP_WORKGROUP, Pipeline, Recorder, Timer, map_groups},
+    push,
+};
+use ash::vk;
+use gridwalk::{Hit, Ray, RayCount, TraceInfo};
+use gridwalk_scene::Camera;
+use std::{ops::ControlFlow, time::Instant};
+
+/// Renders pictures on one device.
+pub struct Renderer {
+    context: Context,
+    camera_rays: Pipeline,
+    first_hit: Pipeline,
+    shade: Pipeline,
+    light_count: Pipeline,
+    light_emit: Pipeline,
+    light_add: Pipeline,
+    reflect_emit: Pipeline,
+    flag_reduce: Pipeline,
+    flag_spine: Pipeline,
+    flag_downsweep: Pipeline,
+    masked_closest: Masked,
+    masked_any: Masked,
+}
+
+/// A walk with masks: its first dispatch, one that goes on, and the last, which reports what is still not done.
+struct Masked {
+    first: Pipeline,
+    again: Pipeline,
+    last: Pipeline,
+}
+
+impl Masked {
+    fn new(context: &Context, kernel: &'static gridwalk::kernel::Kernel) -> Result<Masked> {
+        let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last)]);
+        Ok(Masked { first: variant(0, 0)?, again: variant(1, 0)?, last: variant(1, 1)? })
+    }
+
+    /// A walk is continued three times, as the library's own.
+    fn variants(&self) -> [&Pipeline; 4] {
+        [&self.first, &self.again, &self.again, &self.last]
+    }
+}
+
+impl std::fmt::Debug for Renderer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Renderer").field("context", &self.context).finish_non_exhaustive()
+    }
+}
+
+/// Traces in one submission, each of at most a batch of rays: what keeps a submission short on a slow device.
+const TRACES_PER_SUBMISSION: u32 = 8;
+
+/// Flags that one workgroup of the compaction scans: `FLAG_BLOCK` in `render/shared/flags.glsl`.
+const FLAG_BLOCK: u32 = 2048;
+
+/// [`push::Shade::flags`].
+const SHADE_CAMERA: u32 = 1;
+const SHADE_TRANSPARENT: u32 = 2;
+const SHADE_LAST: u32 = 4;
+
+/// One step of a sample, in order; each that traces ends in a trace.
+#[derive(Clone, Copy)]
+enum Step {
+    Camera,
+    FirstHit,
+    Shade { bounce: u32 },
+    Light { bounce: u32, light: u32 },
+    Reflect { bounce: u32 },
+}
+
+/// All that one picture needs, for one batch of pixels.
+struct Batch<'a> {
+    renderer: &'a Renderer,
+    scene: &'a GpuScene,
+    grid: &'a Grid,
+    capacity: u32,
+    camera: Buffer,
+    /// A header for each bounce's queue and for each light's shadow rays from it.
+    headers: Buffer,
+    rays: [Buffer; 2],
+    paths: [Buffer; 2],
+    hits: Buffer,
+    surfaces: Buffer,
+    reflects: Buffer,
+    shadows: Buffer,
+    offsets: Buffer,
+    sums: Buffer,
+    shadow_rays: Buffer,
+    shadow_paths: Buffer,
+    occluded: Buffer,
+    film: Buffer,
+    unfinished: Buffer,
+    scratch: Buffer,
+    records: Option<Buffer>,
+    counters: Option<Buffer>,
+    bytes: u64,
+    depth: u32,
+    shade_flags: u32,
+}
+
+/// The pixels that a submission is about.
+#[derive(Clone, Copy)]
+struct Span {
+    first: u32,
+    count: u32,
+    offset: [f32; 2],
+}
+
+impl Renderer {
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`].
+    pub fn new(context: &Context) -> Result<Renderer> {
+        let pipeline = |kernel| Pipeline::new(context, kernel, &[]);
+        Ok(Renderer {
+            context: context.clone(),
+            camera_rays: pipeline(&kernels::CAMERA_RAYS)?,
+            first_hit: pipeline(&kernels::FIRST_HIT)?,
+            shade: pipeline(&kernels::SHADE)?,
+            light_count: pipeline(&kernels::LIGHT_COUNT)?,
+            light_emit: pipeline(&kernels::LIGHT_EMIT)?,
+            light_add: pipeline(&kernels::LIGHT_ADD)?,
+            reflect_emit: pipeline(&kernels::REFLECT_EMIT)?,
+            flag_reduce: pipeline(&kernels::FLAG_REDUCE)?,
+            flag_spine: pipeline(&kernels::FLAG_SPINE)?,
+            flag_downsweep: pipeline(&kernels::FLAG_DOWNSWEEP)?,
+            masked_closest: Masked::new(context, &kernels::MASKED_CLOSEST_HIT)?,
+            masked_any: Masked::new(context, &kernels::MASKED_ANY_HIT)?,
+        })
+    }
+
+    /// Renders a scene through its grid. `progress` is called after every submission; when it breaks, the picture is given up.
+    ///
+    /// The same scene, grid, camera and settings give the same picture, bit for bit, on the same device.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for settings without a meaning, [`Error::OutOfDeviceMemory`], [`Error::Interrupted`], those of
+    /// [`Context::submit`].
+    pub fn render(
+        &self,
+        scene: &GpuScene,
+        grid: &Grid,
+        camera: &Camera,
+        settings: &RenderSettings,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Frame> {
+        let crop = settings.check()?;
+        let begin = Instant::now();
+        let pixels = crop.width * crop.height;
+        let batch = Batch::new(self, scene, grid, settings, pixels.min(settings.batch))?;
+        batch.camera.write(0, &[camera_frame(camera, settings, crop)?])?;
+
+        let mut timer = Timer::new(&self.context)?;
+        let mut stats = FrameStats { queue_bytes: batch.bytes, ..FrameStats::default() };
+        let mut picture = Picture::new(crop, settings);
+        let plan = batch.plan();
+        // The middle of each pixel is traced for the layers, and is a sample of the beauty only where there is no other.
+        let layers_apart = batch.records.is_some() && settings.spp > 1;
+        let submissions_each = plan.len() as u64 * u64::from(settings.spp) + u64::from(layers_apart);
+        let total = submissions_each * u64::from(pixels.div_ceil(batch.capacity));
+        let mut done = 0;
+        let mut report = |stats: &mut FrameStats, done: &mut u64, rays: u64| {
+            *done += 1;
+            stats.submissions += 1;
+            let share = *done as f64 / total as f64;
+            match progress(Progress { done: share, camera_rays: rays }) {
+                ControlFlow::Continue(()) => Ok(()),
+                ControlFlow::Break(()) => Err(Error::Interrupted),
+            }
+        };
+        let mut first = 0;
+        while first < pixels {
+            let count = (pixels - first).min(batch.capacity);
+            let mut clear = true;
+            if layers_apart {
+                let span = Span { first, count, offset: [0.5, 0.5] };
+                batch.submit(&mut timer, span, true, &[Step::Camera, Step::FirstHit])?;
+                clear = false;
+                stats.rays.camera += u64::from(count);
+                report(&mut stats, &mut done, u64::from(first))?;
+            }
+            for sample in 0..settings.spp {
+                let span = Span { first, count, offset: sample_offset(sample, settings.spp) };
+                for steps in &plan {
+                    let with_layers = steps.iter().filter(|step| !(layers_apart && matches!(step, Step::FirstHit)));
+                    let steps: Vec<Step> = with_layers.copied().collect();
+                    batch.submit(&mut timer, span, clear, &steps)?;
+                    clear = false;
+                    report(&mut stats, &mut done, u64::from(first))?;
+                }
+                batch.count_rays(&mut stats)?;
+            }
+            batch.read(&mut picture, first, count, &mut stats)?;
+            first += count;
+        }
+        stats.steps = timer.take();
+        let traces = ["closest_hit", "any_hit", "masked_closest_hit", "masked_any_hit"];
+        stats.trace_ms = stats.steps.iter().filter(|step| traces.contains(&step.name)).map(|step| step.ms).sum();
+        let layers = picture.finish()?;
+        stats.frame_ms = begin.elapsed().as_secs_f64() * 1e3;
+        Ok(Frame { layers, stats, build: grid.stats().clone() })
+    }
+}
+
+impl<'a> Batch<'a> {
+    fn new(renderer: &'a Renderer, scene: &'a GpuScene, grid: &'a Grid, settings: &RenderSettings, capacity: u32) -> Result<Batch<'a>> {
+        let context = &renderer.context;
+        let mut bytes = 0;
+        let mut buffer = |name, count: u32, size: usize| {
+            let desc = BufferDesc { name, size: u64::from(count) * size as u64, kind: BufferKind::Device, dedicated: false };
+            let buffer = context.buffer(&desc)?;
+            bytes += buffer.size();
+            Ok::<_, Error>(buffer)
+        };
+        // Without a mirror no bounce has a ray.
+        let depth = if scene.has_mirrors() { settings.depth } else { 0 };
+        let queues = (depth + 1).checked_mul(scene.light_count() + 1).filter(|&queues| queues <= 1 << 20).ok_or_else(|| {
+            Error::Setting { setting: "depth", value: settings.depth.to_string(), expected: "fewer reflections for so many lights" }
+        })?;
+        let wants_layers = !settings.aovs.is_empty();
+        let wants_counts = settings.aovs.iter().any(|aov| aov.is_count());
+        let scratch = u32::try_from(grid.tracer()?.trace_scratch_size(capacity)?.size).unwrap_or(u32::MAX);
+        let mut batch = Batch {
+            renderer,
+            scene,
+            grid,
+            capacity,
+            camera: buffer("camera", 1, size_of::<CameraFrame>())?,
+            headers: buffer("queue headers", queues, size_of::<QueueHeader>())?,
+            rays: [buffer("ray queue 0", capacity, size_of::<Ray>())?, buffer("ray queue 1", capacity, size_of::<Ray>())?],
+            paths: [buffer("path queue 0", capacity, size_of::<Path>())?, buffer("path queue 1", capacity, size_of::<Path>())?],
+            hits: buffer("hits", capacity, size_of::<Hit>())?,
+            surfaces: buffer("surfaces", capacity, size_of::<Surface>())?,
+            reflects: buffer("reflection flags", capacity, 4)?,
+            shadows: buffer("shadow flags", capacity, 4)?,
+            offsets: buffer("queue offsets", capacity, 4)?,
+            sums: buffer("flag sums", capacity.div_ceil(FLAG_BLOCK), 4)?,
+            shadow_rays: buffer("shadow ray queue", capacity, size_of::<Ray>())?,
+            shadow_paths: buffer("shadow path queue", capacity, size_of::<Path>())?,
+            occluded: buffer("occluded", capacity, 4)?,
+            film: buffer("film", capacity, size_of::<Film>())?,
+            unfinished: buffer("unfinished", capacity, 4)?,
+            scratch: buffer("trace scratch", scratch, 1)?,
+            records: if wants_layers { Some(buffer("first hits", capacity, size_of::<FirstHitRecord>())?) } else { None },
+            counters: if wants_counts { Some(buffer("walk counters", capacity, 16)?) } else { None },
+            bytes: 0,
+            depth,
+            shade_flags: if settings.transparent { SHADE_TRANSPARENT } else { 0 },
+        };
+        batch.bytes = bytes;
+        Ok(batch)
+    }
+
+    /// The steps of a sample, cut into submissions.
+    fn plan(&self) -> Vec<Vec<Step>> {
+        let mut steps = vec![Step::Camera];
+        if self.records.is_some() {
+            steps.push(Step::FirstHit);
+        }
+        for bounce in 0..=self.depth {
+            steps.push(Step::Shade { bounce });
+            steps.extend((0..self.scene.light_count()).map(|light| Step::Light { bounce, light }));
+            if bounce < self.depth {
+                steps.push(Step::Reflect { bounce });
+            }
+        }
+        let mut submissions = vec![Vec::new()];
+        let mut traces = 0;
+        for step in steps {
+            let is_trace = matches!(step, Step::Camera | Step::Light { .. } | Step::Reflect { .. });
+            if is_trace && traces == TRACES_PER_SUBMISSION {
+                submissions.push(Vec::new());
+                traces = 0;
+            }
+            traces += u32::from(is_trace);
+            if let Some(last) = submissions.last_mut() {
+                last.push(step);
+            }
+        }
+        submissions
+    }
+
+    fn header_offset(&self, bounce: u32, light: Option<u32>) -> u64 {
+        let queue = u64::from(bounce) * (u64::from(self.scene.light_count()) + 1) + light.map_or(0, |light| u64::from(light) + 1);
+        queue * size_of::<QueueHeader>() as u64
+    }
+
+    fn header(&self, bounce: u32, light: Option<u32>) -> u64 {
+        self.headers.address() + self.header_offset(bounce, light)
+    }
+
+    fn submit(&self, timer: &mut Timer, span: Span, clear: bool, steps: &[Step]) -> Result<()> {
+        let context = &self.renderer.context;
+        context.submit("a batch of pixels", |cmd| {
+            let mut recorder = Recorder::new(context, cmd, timer);
+            if clear {
+                recorder.step("clear", "copy", |cmd| {
+                    for buffer in [&self.film, &self.unfinished] {
+                        // SAFETY: the command buffer is recording; the buffer lives and its size is a multiple of 4.
+                        unsafe { context.device().cmd_fill_buffer(cmd, buffer.raw(), 0, vk::WHOLE_SIZE, 0) };
+                    }
+                });
+            }
+            for step in steps {
+                self.record(&mut recorder, span, *step)?;
+            }
+            Ok(())
+        })?;
+        timer.collect()
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, span: Span, step: Step) -> Result<()> {
+        let renderer = self.renderer;
+        let scene = self.scene.table.address();
+        // A queue's buffers alternate between bounces.
+        let here = |bounce: u32| (bounce % 2) as usize;
+        match step {
+            Step::Camera => {
+                let [groups_x, groups_y, groups_z] = map_groups(span.count);
+                let header = QueueHeader { count: span.count, groups_x, groups_y, groups_z };
+                recorder.step("start", "copy", |cmd| {
+                    // SAFETY: the command buffer is recording; the buffer holds a header at its beginning, of a size that is a multiple of 4.
+                    unsafe {
+                        let bytes = bytemuck::bytes_of(&header);
+                        renderer.context.device().cmd_update_buffer(cmd, self.headers.raw(), 0, bytes);
+                    }
+                });
+                let push = push::CameraRays {
+                    camera: self.camera.address(),
+                    rays: self.rays[0].address(),
+                    paths: self.paths[0].address(),
+                    first_pixel: span.first,
+                    pixel_count: span.count,
+                    sample_offset: span.offset,
+                };
+                recorder.dispatch(&renderer.camera_rays, &push, map_groups(span.count));
+                self.closest_hit(recorder, 0, self.counters.as_ref())?;
+            }
+            Step::FirstHit => {
+                if let Some(records) = &self.records {
+                    let push = push::FirstHit {
+                        scene,
+                        queue: self.header(0, None),
+                        rays: self.rays[0].address(),
+                        hits: self.hits.address(),
+                        records: records.address(),
+                    };
+                    recorder.dispatch(&renderer.first_hit, &push, map_groups(span.count));
+                }
+            }
+            Step::Shade { bounce } => {
+                let mut flags = 0;
+                if bounce == 0 {
+                    flags |= SHADE_CAMERA | self.shade_flags;
+                }
+                if bounce == self.depth {
+                    flags |= SHADE_LAST;
+                }
+                let push = push::Shade {
+                    scene,
+                    queue: self.header(bounce, None),
+                    rays: self.rays[here(bounce)].address(),
+                    hits: self.hits.address(),
+                    paths: self.paths[here(bounce)].address(),
+                    film: self.film.address(),
+                    surfaces: self.surfaces.address(),
+                    reflects: self.reflects.address(),
+                    unfinished: self.unfinished.address(),
+                    flags,
+                    padding: 0,
+                };
+                self.map(recorder, &renderer.shade, &push, self.header_offset(bounce, None));
+            }
+            Step::Light { bounce, light } => {
+                let queue = self.header(bounce, None);
+                let walk = self.header_offset(bounce, None);
+                let shadow_queue = self.header(bounce, Some(light));
+                let rays = self.rays[here(bounce)].address();
+                let surfaces = self.surfaces.address();
+                let push = push::LightCount { scene, queue, rays, surfaces, shadows: self.shadows.address(), light, padding: 0 };
+                self.map(recorder, &renderer.light_count, &push, walk);
+                self.compact(recorder, queue, &self.shadows, shadow_queue);
+                let push = push::LightEmit {
+                    scene,
+                    queue,
+                    rays,
+                    surfaces,
+                    paths: self.paths[here(bounce)].address(),
+                    shadows: self.shadows.address(),
+                    offsets: self.offsets.address(),
+                    shadow_rays: self.shadow_rays.address(),
+                    shadow_paths: self.shadow_paths.address(),
+                    light,
+                    padding: 0,
+                };
+                self.map(recorder, &renderer.light_emit, &push, walk);
+                self.any_hit(recorder, bounce, light)?;
+                let push = push::LightAdd {
+                    queue: shadow_queue,
+                    paths: self.shadow_paths.address(),
+                    occluded: self.occluded.address(),
+                    film: self.film.address(),
+                    unfinished: self.unfinished.address(),
+                };
+                self.map(recorder, &renderer.light_add, &push, self.header_offset(bounce, Some(light)));
+            }
+            Step::Reflect { bounce } => {
+                let queue = self.header(bounce, None);
+                self.compact(recorder, queue, &self.reflects, self.header(bounce + 1, None));
+                let push = push::ReflectEmit {
+                    queue,
+                    rays: self.rays[here(bounce)].address(),
+                    surfaces: self.surfaces.address(),
+                    paths: self.paths[here(bounce)].address(),
+                    reflects: self.reflects.address(),
+                    offsets: self.offsets.address(),
+                    next_rays: self.rays[here(bounce + 1)].address(),
+                    next_paths: self.paths[here(bounce + 1)].address(),
+                };
+                self.map(recorder, &renderer.reflect_emit, &push, self.header_offset(bounce, None));
+                self.closest_hit(recorder, bounce + 1, None)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Launches a map kernel over a queue whose length the device knows.
+    fn map<P: bytemuck::Pod>(&self, recorder: &mut Recorder<'_>, pipeline: &Pipeline, push: &P, header: u64) {
+        let arguments = header + std::mem::offset_of!(QueueHeader, groups_x) as u64;
+        recorder.dispatch_indirect(pipeline, push, self.headers.raw(), arguments);
+    }
+
+    /// Places of the set flags, and the header of the queue that they make.
+    fn compact(&self, recorder: &mut Recorder<'_>, queue: u64, flags: &Buffer, next: u64) {
+        let renderer = self.renderer;
+        let (flags, sums, offsets) = (flags.address(), self.sums.address(), self.offsets.address());
+        let blocks = [self.capacity.div_ceil(FLAG_BLOCK), 1, 1];
+        recorder.dispatch(&renderer.flag_reduce, &push::FlagReduce { queue, flags, sums }, blocks);
+        recorder.dispatch(&renderer.flag_spine, &push::FlagSpine { queue, sums, next }, [1, 1, 1]);
+        recorder.dispatch(&renderer.flag_downsweep, &push::FlagDownsweep { queue, flags, sums, offsets }, blocks);
+    }
+
+    fn trace_info(&self, rays: &Buffer, hits: &Buffer, header: u64) -> TraceInfo {
+        TraceInfo {
+            rays: rays.region(),
+            hits: hits.region(),
+            count: RayCount::Indirect { count: self.headers.region().part(header, 4), max: self.capacity },
+            scratch: self.scratch.region(),
+            resume: false,
+            counters: None,
+        }
+    }
+
+    fn closest_hit(&self, recorder: &mut Recorder<'_>, bounce: u32, counters: Option<&Buffer>) -> Result<()> {
+        let rays = &self.rays[(bounce % 2) as usize];
+        let header = self.header_offset(bounce, None);
+        // Only the library's walk counts: with masks it runs for its counts alone.
+        if counters.is_some() || !self.scene.has_masks() {
+            let tracer = self.grid.tracer()?;
+            let info = TraceInfo { counters: counters.map(Buffer::region), ..self.trace_info(rays, &self.hits, header) };
+            recorder.step("closest_hit", "map", |cmd| {
+                // SAFETY: the command buffer is recording on the tracer's device; all regions are whole living buffers of that device with
+                // room for `capacity` rays; barriers stand before and behind every step; the grid's build was waited for.
+                unsafe { tracer.cmd_closest_hit(cmd, self.grid.address(), &info) }
+            })?;
+        }
+        if self.scene.has_masks() {
+            let push = push::MaskedClosestHit {
+                grid: self.grid.address(),
+                scene: self.scene.table.address(),
+                queue: self.headers.address() + header,
+                rays: rays.address(),
+                hits: self.hits.address(),
+                walks: self.scratch.address(),
+            };
+            for pipeline in self.renderer.masked_closest.variants() {
+                self.map(recorder, pipeline, &push, header);
+            }
+        }
+        Ok(())
+    }
+
+    fn any_hit(&self, recorder: &mut Recorder<'_>, bounce: u32, light: u32) -> Result<()> {
+        let header = self.header_offset(bounce, Some(light));
+        if self.scene.has_masks() {
+            let push = push::MaskedAnyHit {
+                grid: self.grid.address(),
+                scene: self.scene.table.address(),
+                queue: self.headers.address() + header,
+                rays: self.shadow_rays.address(),
+                occluded: self.occluded.address(),
+                walks: self.scratch.address(),
+            };
+            for pipeline in self.renderer.masked_any.variants() {
+                self.map(recorder, pipeline, &push, header);
+            }
+            return Ok(());
+        }
+        let tracer = self.grid.tracer()?;
+        let info = self.trace_info(&self.shadow_rays, &self.occluded, header);
+        recorder.step("any_hit", "map", |cmd| {
+            // SAFETY: as in `closest_hit`.
+            unsafe { tracer.cmd_any_hit(cmd, self.grid.address(), &info) }
+        })?;
+        Ok(())
+    }
+
+    /// Adds the lengths of a sample's queues.
+    fn count_rays(&self, stats: &mut FrameStats) -> Result<()> {
+        let lights = self.scene.light_count() as usize;
+        let headers = self.headers.read::<QueueHeader>(0, (self.depth as usize + 1) * (lights + 1))?;
+        for (bounce, queues) in headers.chunks_exact(lights + 1).enumerate() {
+            let count = u64::from(queues[0].count);
+            if bounce == 0 {
+                stats.rays.camera += count;
+            } else {
+                stats.rays.reflection += count;
+            }
+            stats.rays.shadow += queues[1..].iter().map(|queue| u64::from(queue.count)).sum::<u64>();
+        }
+        Ok(())
+    }
+
+    fn read(&self, picture: &mut Picture, first: u32, count: u32, stats: &mut FrameStats) -> Result<()> {
+        let film = self.film.read::<Film>(0, count as usize)?;
+        let unfinished = self.unfinished.read::<u32>(0, count as usize)?;
+        stats.rays.unfinished += unfinished.iter().map(|&rays| u64::from(rays)).sum::<u64>();
+        picture.add_film(first, &film);
+        if let Some(records) = &self.records {
+            let records = records.read::<FirstHitRecord>(0, count as usize)?;
+            let counters = match &self.counters {
+                Some(counters) => counters.read::<[u32; 4]>(0, count as usize)?,
+                None => Vec::new(),
+            };
+            picture.add_records(first, &records, &counters);
+        }
+        Ok(())
+    }
+}
+
+/// A picture as it is put together from batches.
+struct Picture {
+    width: u32,
+    height: u32,
+    scale: f32,
+    transparent: bool,
+    beauty: Vec<f32>,
+    layers: Vec<(Aov, LayerData)>,
+}
+
+impl Picture {
+    fn new(crop: Crop, settings: &RenderSettings) -> Picture {
+        let pixels = crop.width as usize * crop.height as usize;
+        let mut aovs = settings.aovs.clone();
+        aovs.sort_unstable();
+        aovs.dedup();
+        let layers = aovs
+            .into_iter()
+            .map(|aov| {
+                let values = pixels * aov.channels().1.len();
+                let data =
+                    if aov == Aov::Id || aov.is_count() { LayerData::Uint(vec![0; values]) } else { LayerData::Float(vec![0.0; values]) };
+                (aov, data)
+            })
+            .collect();
+        Picture {
+            width: crop.width,
+            height: crop.height,
+            scale: 1.0 / settings.spp as f32,
+            transparent: settings.transparent,
+            beauty: vec![0.0; pixels * 4],
+            layers,
+        }
+    }
+
+    fn add_film(&mut self, first: u32, film: &[Film]) {
+        for (place, pixel) in (first..).zip(film) {
+            let at = tiled_pixel(place, self.width, self.height) * 4;
+            let alpha = if self.transparent { pixel.coverage * self.scale } else { 1.0 };
+            let [r, g, b] = pixel.radiance.map(|value| value * self.scale);
+            if let Some(target) = self.beauty.get_mut(at..at + 4) {
+                target.copy_from_slice(&[r, g, b, alpha]);
+            }
+        }
+    }
+
+    fn add_records(&mut self, first: u32, records: &[FirstHitRecord], counters: &[[u32; 4]]) {
+        let (width, height) = (self.width, self.height);
+        for (aov, data) in &mut self.layers {
+            let channels = aov.channels().1.len();
+            for (i, record) in records.iter().enumerate() {
+                let at = tiled_pixel(first + i as u32, width, height) * channels;
+                let counts = counters.get(i).copied().unwrap_or_default();
+                let uv = [record.u, record.v];
+                let ids = [record.primitive, record.mesh, record.material];
+                match data {
+                    LayerData::Float(values) => {
+                        let source: &[f32] = match aov {
+                            Aov::Depth => std::slice::from_ref(&record.distance),
+                            Aov::Normal => &record.normal,
+                            Aov::GeometricNormal => &record.geometric_normal,
+                            Aov::Position => &record.position,
+                            Aov::Albedo => &record.albedo,
+                            _ => &uv,
+                        };
+                        if let Some(target) = values.get_mut(at..at + channels) {
+                            target.copy_from_slice(source);
+                        }
+                    }
+                    LayerData::Uint(values) => {
+                        let source: &[u32] = match aov {
+                            Aov::Steps => &counts[..1],
+                            Aov::Tests => &counts[1..2],
+                            Aov::Cells => &counts[2..3],
+                            _ => &ids,
+                        };
+                        if let Some(target) = values.get_mut(at..at + channels) {
+                            target.copy_from_slice(source);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn finish(self) -> Result<Layers> {
+        let mut layers = Layers::new(self.width, self.height);
+        let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        layers.push(Layer {
+            name: "beauty".to_owned(),
+            prefix: String::new(),
+            channels: names(&["R", "G", "B", "A"]),
+            data: LayerData::Float(self.beauty),
+        })?;
+        for (aov, data) in self.layers {
+            let (prefix, channels) = aov.channels();
+            layers.push(Layer { name: aov.layer().to_owned(), prefix: prefix.to_owned(), channels: names(channels), data })?;
+        }
+        Ok(layers)
+    }
+}
+
+/// Index of the pixel at a place in the order of tiles: the host's twin of `tiled_pixel` in `camera_rays`.
+fn tiled_pixel(place: u32, width: u32, height: u32) -> usize {
+    const TILE: u32 = 8;
+    let band = place / (TILE * width);
+    let place = place - band * TILE * width;
+    let rows = TILE.min(height - band * TILE);
+    let column = place / (TILE * rows);
+    let place = place - column * TILE * rows;
+    let columns = TILE.min(width - column * TILE);
+    let (x, y) = (column * TILE + place % columns, band * TILE + place / columns);
+    y as usize * width as usize + x as usize
+}
+
+/// Where in the pixel a sample goes through: a Hammersley set, so that every row, every column and every power-of-two block of strata
+/// holds its share of the samples. A single sample goes through the middle.
+fn sample_offset(sample: u32, count: u32) -> [f32; 2] {
+    let half = 0.5 / count as f32;
+    let reversed = sample.reverse_bits() as f32 / 4_294_967_296.0;
+    let below_one = 1.0 - f32::EPSILON;
+    [(sample as f32 / count as f32 + half).min(below_one), (reversed + half).min(below_one)]
+}
+
+fn camera_frame(camera: &Camera, settings: &RenderSettings, crop: Crop) -> Result<CameraFrame> {
+    let bad = |value: String, expected| Error::Setting { setting: "camera", value, expected };
+    let wide = |v: [f32; 3]| v.map(f64::from);
+    let sub = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let cross = |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let unit = |v: [f64; 3]| {
+        let largest = v.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let v = v.map(|value| value / largest);
+        let length = v.iter().map(|value| value * value).sum::<f64>().sqrt();
+        (length.is_finite() && length > 0.0).then(|| v.map(|value| value / length))
+    };
+    let direction = sub(wide(camera.target), wide(camera.eye));
+    let Some(forward) = unit(direction) else {
+        return Err(bad(format!("eye {:?}, target {:?}", camera.eye, camera.target), "an eye and a target that differ, of finite numbers"));
+    };
+    // Looking straight up or down leaves the roll open: any will do.
+    let sideways = |up: [f64; 3]| {
+        unit(up).and_then(|up| {
+            unit(cross(forward, up)).filter(|_| {
+                let along: f64 = (0..3).map(|i| forward[i] * up[i]).sum();
+                along.abs() < 1.0 - 1e-12
+            })
+        })
+    };
+    let Some(right) = sideways(wide(camera.up)).or_else(|| sideways([0.0, 0.0, 1.0])).or_else(|| sideways([0.0, 1.0, 0.0])) else {
+        return Err(bad(format!("up {:?}", camera.up), "finite numbers"));
+    };
+    let up = cross(right, forward);
+    let half_height = match camera.orthographic_height {
+        Some(height) if height > 0.0 && height.is_finite() => f64::from(height) * 0.5,
+        Some(height) => return Err(bad(format!("orthographic height {height}"), "a number above 0")),
+        None if camera.vertical_fov_degrees > 0.0 && camera.vertical_fov_degrees < 180.0 => {
+            (f64::from(camera.vertical_fov_degrees).to_radians() * 0.5).tan()
+        }
+        None => return Err(bad(format!("field of view {}", camera.vertical_fov_degrees), "degrees above 0 and below 180")),
+    };
+    let half_width = half_height * f64::from(settings.width) / f64::from(settings.height);
+    let narrow = |v: [f64; 3], factor: f64| v.map(|value| (value * factor) as f32);
+    Ok(CameraFrame {
+        eye: camera.eye,
+        is_orthographic: u32::from(camera.orthographic_height.is_some()),
+        forward: narrow(forward, 1.0),
+        right: narrow(right, half_width),
+        up: narrow(up, half_height),
+        size: [settings.width, settings.height],
+        crop_origin: [crop.x, crop.y],
+        crop_size: [crop.width, crop.height],
+        ..CameraFrame::default()
+    })
+}
+
+const _: () = assert!(MAP_WORKGROUP == 64);

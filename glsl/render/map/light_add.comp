@@ -1,0 +1,30 @@
+#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_GOOGLE_include_directive : require
+// Adds the light of every shadow ray that met nothing.
+
+#include "render/shared/queue.glsl"
+
+layout(local_size_x_id = 0, local_size_x = 64) in;
+
+layout(push_constant, std430) uniform LightAdd {
+    QueueIn queue;
+    PathsIn paths;
+    WordsIn occluded; // 0, 1, or given up
+    FilmInOut film;
+    WordsInOut unfinished;
+};
+
+void main() {
+    uint i = invocation_index();
+    if (i >= queue.header.count) {
+        return;
+    }
+    Path path = paths.path[i];
+    uint answer = occluded.word[i];
+    if (answer == 0u) {
+        film.film[path.slot].radiance += path.weight;
+    } else if (answer == GRIDWALK_UNFINISHED) {
+        unfinished.word[path.slot] += 1u;
+    }
+}

@@ -1,0 +1,43 @@
+#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_GOOGLE_include_directive : require
+// Writes the reflected rays of the flagged surfaces side by side, in order.
+
+#include "render/shared/queue.glsl"
+
+layout(local_size_x_id = 0, local_size_x = 64) in;
+
+layout(push_constant, std430) uniform ReflectEmit {
+    QueueIn queue;
+    RaysIn rays;
+    SurfacesIn surfaces;
+    PathsIn paths;
+    WordsIn reflects;
+    WordsIn offsets;
+    RaysOut next_rays;
+    PathsOut next_paths;
+};
+
+void main() {
+    uint i = invocation_index();
+    if (i >= queue.header.count || reflects.word[i] == 0u) {
+        return;
+    }
+    Surface surface = surfaces.surface[i];
+    vec3 incoming = normalize(rays.ray[i].direction);
+    vec3 outgoing = reflect(incoming, surface.normal);
+    // A smooth or mapped normal may mirror the ray into the surface: the triangle's own does not.
+    if (!(dot(outgoing, surface.geometric_normal) > 0.0)) {
+        outgoing = reflect(incoming, surface.geometric_normal);
+    }
+    Ray ray;
+    ray.origin = surface.position + surface.geometric_normal * surface.offset;
+    ray.t_min = 0.0;
+    ray.direction = normalize(outgoing);
+    ray.t_max = GRIDWALK_INFINITY;
+    Path path = paths.path[i];
+    path.weight *= surface.specular;
+    uint place = offsets.word[i];
+    next_rays.ray[place] = ray;
+    next_paths.path[place] = path;
+}
