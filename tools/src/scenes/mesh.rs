@@ -65,6 +65,51 @@ impl Mesh {
     }
 }
 
+/// The box of what an OBJ file's faces use.
+#[derive(Debug, PartialEq)]
+pub struct Bounds {
+    /// Least corner.
+    pub min: [f64; 3],
+    /// Greatest corner.
+    pub max: [f64; 3],
+}
+
+impl Bounds {
+    /// The box after a linear map, given by rows; `None` without a face.
+    pub fn of_obj(path: &Path, map: &[[f64; 3]; 3]) -> Result<Option<Bounds>> {
+        let bytes = std::fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+        let text = String::from_utf8_lossy(&bytes);
+        let mut positions: Vec<[f64; 3]> = Vec::new();
+        let mut bounds = Bounds { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
+        for line in text.lines() {
+            let mut words = line.split_whitespace();
+            match words.next() {
+                Some("v") => {
+                    let v: Vec<f64> = words.take(3).filter_map(|word| word.parse().ok()).collect();
+                    let [x, y, z] = v[..] else { bail!("{}: {line:?} is no vertex", path.display()) };
+                    positions.push(map.map(|row| row[0] * x + row[1] * y + row[2] * z));
+                }
+                Some("f") => {
+                    for corner in words {
+                        let index: i64 = corner.split('/').next().and_then(|index| index.parse().ok()).unwrap_or(0);
+                        let index = if index < 0 { positions.len() as i64 + index } else { index - 1 };
+                        let Some(position) = usize::try_from(index).ok().and_then(|index| positions.get(index)) else { continue };
+                        bounds.min = std::array::from_fn(|axis| bounds.min[axis].min(position[axis]));
+                        bounds.max = std::array::from_fn(|axis| bounds.max[axis].max(position[axis]));
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok((bounds.min[0] <= bounds.max[0]).then_some(bounds))
+    }
+
+    /// Length along each axis.
+    pub fn extent(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.max[axis] - self.min[axis])
+    }
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
@@ -76,6 +121,15 @@ mod tests {
         let mesh = Mesh::from_ascii_ply(ply.as_bytes()).unwrap();
         assert_eq!(mesh.positions.len(), 4);
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn bounds_of_what_faces_use() {
+        let file = std::env::temp_dir().join(format!("gridwalk-bounds-{}.obj", std::process::id()));
+        std::fs::write(&file, "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 2 -3\nf 2//1 3 -1\n").unwrap();
+        let bounds = Bounds::of_obj(&file, &[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).unwrap();
+        std::fs::remove_file(&file).unwrap();
+        assert_eq!(bounds, Some(Bounds { min: [0.0, 0.0, -3.0], max: [2.0, 1.0, 0.0] }));
     }
 
     #[test]
