@@ -202,8 +202,8 @@ fn tube_along(name: &str, rings: u32, sides: u32, tube: f64, curve: impl Fn(f64)
     let at = |ring: u32, side: u32| ring * (sides + 1) + side;
     for ring in 0..rings {
         for side in 0..sides {
-            mesh.indices.push([at(ring, side), at(ring, side + 1), at(ring + 1, side)]);
-            mesh.indices.push([at(ring + 1, side), at(ring, side + 1), at(ring + 1, side + 1)]);
+            mesh.indices.push([at(ring, side), at(ring + 1, side), at(ring, side + 1)]);
+            mesh.indices.push([at(ring + 1, side), at(ring + 1, side + 1), at(ring, side + 1)]);
         }
     }
     finished(name, mesh)
