@@ -7,8 +7,18 @@ use crate::{
 use gridwalk::{Hit, Ray, RayCount, TraceInfo};
 use std::time::Instant;
 
-/// Rays of one submission at most: what a watchdog lets through on a slow device.
+/// Rays of one submission at most, so that it is short enough for a watchdog.
 pub const RAYS_PER_SUBMISSION: u32 = 262_144;
+
+/// The same for a CPU, whose slowest driver traces ten thousand rays a second through a hard scene.
+const CPU_RAYS_PER_SUBMISSION: u32 = 65_536;
+
+impl Context {
+    /// Rays that one submission traces at most on this device.
+    pub fn rays_per_submission(&self) -> u32 {
+        if self.is_cpu() { CPU_RAYS_PER_SUBMISSION } else { RAYS_PER_SUBMISSION }
+    }
+}
 
 /// Rays that [`cast`] and [`occluded`] bring to the device at once.
 const RAYS_PER_BATCH: usize = 1 << 22;
@@ -58,7 +68,7 @@ impl RayBatch {
         self.count == 0
     }
 
-    /// Finds the closest hit of every ray, in submissions of at most [`RAYS_PER_SUBMISSION`]; returns the milliseconds that it took, by the
+    /// Finds the closest hit of every ray, in submissions of at most [`Context::rays_per_submission`]; returns the milliseconds that it took, by the
     /// device's clock where it has one.
     ///
     /// # Errors
@@ -93,10 +103,11 @@ impl RayBatch {
 
     fn trace(&mut self, grid: &Grid, query: Query) -> Result<f64> {
         let tracer = grid.tracer()?;
+        let most = self.context.rays_per_submission();
         let scratch = match self.scratch.take() {
             Some(scratch) => scratch,
             None => {
-                let size = tracer.trace_scratch_size(self.count.min(RAYS_PER_SUBMISSION))?.size;
+                let size = tracer.trace_scratch_size(self.count.min(most))?.size;
                 self.context.buffer(&BufferDesc { name: "trace scratch", size, kind: BufferKind::Device, dedicated: false })?
             }
         };
@@ -108,7 +119,7 @@ impl RayBatch {
             Query::Any => 4,
         };
         while first < self.count {
-            let count = (self.count - first).min(RAYS_PER_SUBMISSION);
+            let count = (self.count - first).min(most);
             let info = TraceInfo {
                 rays: self.rays.region().part(u64::from(first) * size_of::<Ray>() as u64, u64::from(count) * size_of::<Ray>() as u64),
                 hits: self.answers.region().part(u64::from(first) * answer_size, u64::from(count) * answer_size),

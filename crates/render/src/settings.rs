@@ -143,7 +143,7 @@ pub struct RenderSettings {
     pub aovs: Vec<Aov>,
     /// Leaves the background out of the picture, and the share of a pixel that it fills out of its alpha.
     pub transparent: bool,
-    /// Pixels that are rendered at once, at most 262,144.
+    /// Pixels that are rendered at once, at most 262,144; on a CPU no more than [`crate::Context::rays_per_submission`] are.
     pub batch: u32,
 }
 

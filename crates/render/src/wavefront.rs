@@ -57,7 +57,7 @@ impl std::fmt::Debug for Renderer {
     }
 }
 
-/// Traces in one submission, each of at most a batch of rays: what keeps a submission short on a slow device.
+/// Traces in one submission, each of at most a batch of rays: what keeps a submission short enough for a watchdog.
 const TRACES_PER_SUBMISSION: u32 = 8;
 
 /// Flags that one workgroup of the compaction scans: `FLAG_BLOCK` in `render/shared/flags.glsl`.
@@ -158,7 +158,8 @@ impl Renderer {
         let crop = settings.check()?;
         let begin = Instant::now();
         let pixels = crop.width * crop.height;
-        let batch = Batch::new(self, scene, grid, settings, pixels.min(settings.batch))?;
+        let capacity = pixels.min(settings.batch).min(self.context.rays_per_submission());
+        let batch = Batch::new(self, scene, grid, settings, capacity)?;
         batch.camera.write(0, &[camera_frame(camera, settings, crop)?])?;
 
         let mut timer = Timer::new(&self.context)?;
@@ -275,11 +276,13 @@ impl<'a> Batch<'a> {
                 steps.push(Step::Reflect { bounce });
             }
         }
+        // A CPU takes long for a trace and nothing for a submission.
+        let most = if self.renderer.context.is_cpu() { 1 } else { TRACES_PER_SUBMISSION };
         let mut submissions = vec![Vec::new()];
         let mut traces = 0;
         for step in steps {
             let is_trace = matches!(step, Step::Camera | Step::Light { .. } | Step::Reflect { .. });
-            if is_trace && traces == TRACES_PER_SUBMISSION {
+            if is_trace && traces == most {
                 submissions.push(Vec::new());
                 traces = 0;
             }
