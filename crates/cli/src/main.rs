@@ -1,7 +1,6 @@
 //! The program `gridwalk`.
 #![forbid(unsafe_code)]
 
-mod aov;
 mod args;
 mod commands;
 mod exit;
@@ -12,6 +11,7 @@ mod output;
 mod progress;
 mod report;
 mod scene;
+mod session;
 mod suggest;
 
 use std::process::ExitCode;

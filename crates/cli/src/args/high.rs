@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use gridwalk_render::DeviceSelector;
 use gridwalk_render::gridwalk_scene::{Camera, Framing, LoadOptions, Scene};
 use gridwalk_render::image::{Format, Overwrite, Tonemap};
+use gridwalk_render::{Aov, Crop, DeviceSelector};
 
 use super::low;
-use crate::aov::Aov;
 use crate::exit::{Failure, Result};
 use crate::suggest;
 
@@ -46,6 +45,14 @@ pub enum Target {
 impl Target {
     pub fn new(path: &Path) -> Target {
         if path.as_os_str() == "-" { Target::Stdout } else { Target::Path(path.to_owned()) }
+    }
+
+    /// As messages and reports call it.
+    pub fn name(&self) -> String {
+        match self {
+            Target::Stdout => "-".to_owned(),
+            Target::Path(path) => path.display().to_string(),
+        }
     }
 }
 
@@ -87,6 +94,8 @@ pub struct Render {
     pub outputs: Vec<Output>,
     pub overwrite: Overwrite,
     pub size: Option<[u32; 2]>,
+    pub crop: Option<Crop>,
+    pub transparent: bool,
     pub aovs: Vec<Aov>,
     pub heatmap: Option<low::Heatmap>,
     pub exposure: Option<f32>,
@@ -144,7 +153,9 @@ impl Render {
             outputs,
             overwrite: overwrite(low.overwrite),
             size: low.size,
-            aovs: aovs(&low.aov, has_exr, low.heatmap)?,
+            aovs: aovs(&low.aov, low.heatmap)?,
+            transparent: low.transparent,
+            crop: low.crop.map(|[x, y, width, height]| Crop { x, y, width, height }),
             heatmap: low.heatmap,
             exposure: low.exposure,
             tonemap: low.tonemap.as_deref().map(tonemap).transpose()?,
@@ -220,27 +231,22 @@ fn scene_name(path: &Path) -> String {
     (if generic { folder() } else { own() }).unwrap_or_else(|| "picture".to_owned())
 }
 
-/// The layers: what an EXR is asked for, by default all that cost nothing beyond the beauty; what a heat map needs.
-fn aovs(names: &[String], has_exr: bool, heatmap: Option<low::Heatmap>) -> Result<Vec<Aov>> {
+/// The layers beside the beauty: what is asked for, and what a heat map needs.
+fn aovs(names: &[String], heatmap: Option<low::Heatmap>) -> Result<Vec<Aov>> {
     let mut aovs = Vec::new();
-    for name in names {
-        match name.trim() {
+    for name in names.iter().map(|name| name.trim()) {
+        match name {
             "all" => aovs.extend(Aov::ALL),
+            // Always there.
+            "beauty" => {}
             name => aovs.push(aov(name)?),
         }
     }
-    if has_exr && names.is_empty() {
-        aovs.push(Aov::Beauty);
-    }
-    if has_exr && !aovs.contains(&Aov::Beauty) {
-        aovs.insert(0, Aov::Beauty);
-    }
-    if heatmap.is_some() {
-        aovs.push(Aov::Debug);
-    }
-    if aovs.is_empty() {
-        aovs.push(Aov::Beauty);
-    }
+    aovs.extend(heatmap.map(|heatmap| match heatmap {
+        low::Heatmap::Steps => Aov::Steps,
+        low::Heatmap::Tests => Aov::Tests,
+        low::Heatmap::Cells => Aov::Cells,
+    }));
     let mut unique = Vec::new();
     for aov in aovs {
         if !unique.contains(&aov) {
@@ -250,28 +256,11 @@ fn aovs(names: &[String], has_exr: bool, heatmap: Option<low::Heatmap>) -> Resul
     Ok(unique)
 }
 
-/// What the layers are called in words.
-const AOV_WORDS: &[(&str, Aov)] = &[
-    ("depth", Aov::Z),
-    ("normal", Aov::N),
-    ("geometric_normal", Aov::Ng),
-    ("position", Aov::P),
-    ("ids", Aov::Id),
-    ("prim_id", Aov::Id),
-    ("mesh_id", Aov::Id),
-    ("material_id", Aov::Id),
-    ("steps", Aov::Debug),
-    ("tests", Aov::Debug),
-    ("cells", Aov::Debug),
-];
-
 fn aov(name: &str) -> Result<Aov> {
-    let known = Aov::ALL.into_iter().map(|aov| (aov.name(), aov)).chain(AOV_WORDS.iter().copied());
-    let found =
-        known.clone().find(|(known, _)| *known == name).or_else(|| known.clone().find(|(known, _)| known.eq_ignore_ascii_case(name)));
-    found.map(|(_, aov)| aov).ok_or_else(|| {
-        let names: Vec<&str> = known.map(|(name, _)| name).collect();
-        Failure::usage(format!("no layer is called \"{name}\"; {}", suggest::hint(name, names)))
+    name.parse().map_err(|_| {
+        let names: Vec<&str> = ["beauty"].into_iter().chain(Aov::ALL.into_iter().flat_map(|aov| [aov.name(), aov.layer()])).collect();
+        let hint = suggest::nearest(name, names).map_or("see --list-aovs".to_owned(), |name| format!("did you mean \"{name}\"?"));
+        Failure::usage(format!("no layer is called \"{name}\"; {hint}"))
     })
 }
 
@@ -380,7 +369,7 @@ fn named(scene: &Scene, name: &str) -> Result<Camera> {
 #[cfg(test)]
 mod tests {
     use super::{Source, Target, aovs, outputs, scene_name};
-    use crate::aov::Aov;
+    use gridwalk_render::Aov;
     use gridwalk_render::image::Format;
     use std::path::Path;
 
@@ -403,9 +392,9 @@ mod tests {
 
     #[test]
     fn layers_by_name_and_word() {
-        let names = |names: &[&str]| aovs(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>(), true, None);
-        assert_eq!(names(&[]).ok(), Some(vec![Aov::Beauty]));
-        assert_eq!(names(&["depth", "N", "normal"]).ok(), Some(vec![Aov::Beauty, Aov::Z, Aov::N]));
+        let names = |names: &[&str]| aovs(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>(), None);
+        assert_eq!(names(&[]).ok(), Some(vec![]));
+        assert_eq!(names(&["depth", "beauty", "N", "normal"]).ok(), Some(vec![Aov::Depth, Aov::Normal]));
         assert_eq!(names(&["all"]).ok().map(|all| all.len()), Some(Aov::ALL.len()));
         let message = names(&["albdo"]).err().map(|failure| failure.error.to_string()).unwrap_or_default();
         assert!(message.contains("did you mean \"albedo\""), "{message}");

@@ -65,6 +65,7 @@ const CAST_EXAMPLES: &str = "\
 RAYS.npy holds float32 of shape (N, 6): origin x y z, direction x y z; or (N, 8): and then t_min, t_max.
 HITS.npz holds t_hit float32 (inf on a miss), primitive_ids and geometry_ids uint32 (4294967295 on a miss; primitives count in file
 order within their geometry), primitive_uvs float32 (N, 2), primitive_normals float32 (N, 3); with --occlusion it holds occluded alone.
+Materials do not matter: a triangle with holes in its texture is hit all over.
 
 Examples:
   gridwalk cast scene.obj --rays rays.npy -o hits.npz
@@ -151,6 +152,12 @@ pub struct Render {
     /// Pixels
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Output")]
     pub size: Option<Extent>,
+    /// Render a part alone, from its upper left corner
+    #[arg(long, value_name = "X,Y,W,H", value_parser = super::values::crop, help_heading = "Output")]
+    pub crop: Option<[u32; 4]>,
+    /// Leave the background out: the picture gets an alpha channel
+    #[arg(long, help_heading = "Output")]
+    pub transparent: bool,
     /// Layers for the EXR, comma-separated: see --list-aovs; `all` for every one
     #[arg(long, value_name = "LAYERS", value_delimiter = ',', help_heading = "Output")]
     pub aov: Vec<String>,
@@ -214,7 +221,7 @@ pub enum Heatmap {
     Steps,
     /// Triangles that it was tested against
     Tests,
-    /// Triangles in the list of the cell in which it ended
+    /// Cells that it passed and that were not empty
     Cells,
 }
 

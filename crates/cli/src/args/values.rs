@@ -27,6 +27,11 @@ pub fn resolution(text: &str) -> Result<Resolution, String> {
     if cells.iter().any(|n| *n == 0 || *n > 4096) { Err("each axis must have 1 to 4096 cells".to_owned()) } else { Ok(cells) }
 }
 
+/// `100,50,320,240`: first column and row, columns, rows.
+pub fn crop(text: &str) -> Result<[u32; 4], String> {
+    integers(text).filter(|[_, _, width, height]| *width > 0 && *height > 0).ok_or_else(|| "write it as x,y,width,height".to_owned())
+}
+
 fn integers<const N: usize>(text: &str) -> Option<[u32; N]> {
     let parts: Option<Vec<u32>> = text.split(['x', 'X', ',']).map(|part| part.trim().parse().ok()).collect();
     parts?.try_into().ok()

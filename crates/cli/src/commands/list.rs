@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use gridwalk_render::Aov;
 use gridwalk_render::image::{Format, Tonemap};
 
-use crate::aov::Aov;
 use crate::args::high::{Source, load_options};
 use crate::args::low::{Limits, List, Listed};
 use crate::exit::{Exit, Failure, Result};
@@ -34,7 +34,25 @@ pub fn cameras(source: &Source, limits: &Limits) -> Result<Exit> {
 }
 
 pub fn aovs() -> Result<Exit> {
-    print(Aov::ALL.into_iter().map(|aov| (aov.name().to_owned(), aov.description().to_owned())))
+    let beauty = ("beauty".to_owned(), "R G B A: the picture, linear; always there".to_owned());
+    print(std::iter::once(beauty).chain(Aov::ALL.into_iter().map(|aov| (aov.layer().to_owned(), describe(aov)))))
+}
+
+fn describe(aov: Aov) -> String {
+    let what = match aov {
+        Aov::Depth => "Z: distance along the ray, infinite on the background",
+        Aov::Normal => "N.X N.Y N.Z: shading normal, towards the viewer",
+        Aov::GeometricNormal => "Ng.X Ng.Y Ng.Z: the triangle's own normal, towards the viewer",
+        Aov::Position => "P.X P.Y P.Z: position",
+        Aov::Albedo => "albedo.R albedo.G albedo.B: diffuse colour without light",
+        Aov::Uv => "uv.U uv.V: texture coordinates",
+        Aov::Id => "id.prim id.mesh id.material: integers, 4294967295 on the background",
+        Aov::Steps => "debug.steps: cells that the camera ray passed",
+        Aov::Tests => "debug.tests: triangles that it was tested against",
+        Aov::Cells => "debug.cells: cells that it passed and that were not empty",
+        _ => "",
+    };
+    if aov.name() == aov.layer() { what.to_owned() } else { format!("{what} (also called {})", aov.name()) }
 }
 
 pub fn tonemaps() -> Result<Exit> {
