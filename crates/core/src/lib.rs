@@ -1,9 +1,16 @@
 //! Uniform grids for ray tracing, as data and arithmetic: what the kernels compute, on the CPU and without Vulkan.
 #![forbid(unsafe_code)]
 
+pub mod dispatch;
+pub mod gather;
+pub mod grid;
 pub mod kernel;
 pub mod layout;
+pub mod overlap;
 pub mod ray;
+pub mod shape;
+pub mod sort;
+pub mod vector;
 
 pub use layout::Report;
 pub use ray::{Hit, MISS, Ray, UNFINISHED};

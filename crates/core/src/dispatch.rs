@@ -1,0 +1,16 @@
+//! How a number of elements becomes workgroups, as `shared/dispatch.glsl` has it.
+
+/// Most workgroups along x that every device takes.
+pub const MAX_GROUPS_X: u32 = 65_535;
+
+/// Workgroups for `count` elements, `size` a workgroup: at most 65,535 along x, the rest along y. The last row may hold workgroups beyond
+/// the last element.
+pub const fn split_workgroups(count: u32, size: u32) -> [u32; 3] {
+    let groups = count.div_ceil(size);
+    if groups <= MAX_GROUPS_X { [groups, 1, 1] } else { [MAX_GROUPS_X, groups.div_ceil(MAX_GROUPS_X), 1] }
+}
+
+/// Indices of the workgroups of a dispatch, those beyond the last element included.
+pub fn workgroups(groups: [u32; 3]) -> std::ops::Range<u32> {
+    0..groups[0] * groups[1]
+}

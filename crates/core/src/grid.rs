@@ -1,0 +1,19 @@
+//! Cells of a grid, as `shared/grid.glsl` has them.
+
+use crate::vector::{Vec3, add, mul};
+
+/// Lower boundary of cell `i`, upper boundary of cell `i - 1`.
+pub fn boundary(box_min: Vec3, cell_size: Vec3, i: Vec3) -> Vec3 {
+    let offset = mul(i, cell_size);
+    add(box_min, offset)
+}
+
+/// Index of a cell.
+pub fn cell_id(cell: [u32; 3], resolution: [u32; 3]) -> u32 {
+    cell[0] + resolution[0] * (cell[1] + resolution[1] * cell[2])
+}
+
+/// Cell of an index: the inverse of [`cell_id`].
+pub fn cell_of(id: u32, resolution: [u32; 3]) -> [u32; 3] {
+    [id % resolution[0], id / resolution[0] % resolution[1], id / resolution[0] / resolution[1]]
+}

@@ -1,0 +1,72 @@
+//! Which cells a triangle overlaps, as `shared/overlap.glsl` has it (thesis section 3.1, Figure 3.2).
+
+use crate::grid::boundary;
+use crate::layout::GridHeader;
+use crate::vector::{Vec3, add, max, max_f32, min, min_f32, mul, sub};
+
+/// Cells from `low` to `high`, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CellBox {
+    /// First cell along each axis.
+    pub low: [u32; 3],
+    /// Last cell along each axis.
+    pub high: [u32; 3],
+}
+
+impl CellBox {
+    /// Cells along each axis.
+    pub fn size(&self) -> [u32; 3] {
+        std::array::from_fn(|axis| self.high[axis] - self.low[axis] + 1)
+    }
+
+    /// The n-th cell, x fastest.
+    pub fn cell(&self, n: u32) -> [u32; 3] {
+        let size = self.size();
+        let row = n / size[0];
+        [self.low[0] + n % size[0], self.low[1] + row % size[1], self.low[2] + row / size[1]]
+    }
+}
+
+/// Cells whose boundaries enclose [`low`, `high`].
+pub fn overlapped_box(grid: &GridHeader, low: Vec3, high: Vec3) -> CellBox {
+    let last = grid.resolution.map(|n| n as f32 - 1.0);
+    let locate = |point| min(max(mul(sub(point, grid.box_min), grid.inverse_cell_size).map(f32::floor), [0.0; 3]), last);
+    let (first, end) = (locate(low), locate(high));
+    let lower = boundary(grid.box_min, grid.cell_size, first);
+    let upper = boundary(grid.box_min, grid.cell_size, add(end, [1.0; 3]));
+    CellBox {
+        low: std::array::from_fn(|axis| max_f32(first[axis] - f32::from(lower[axis] > low[axis]), 0.0) as u32),
+        high: std::array::from_fn(|axis| min_f32(end[axis] + f32::from(upper[axis] <= high[axis]), last[axis]) as u32),
+    }
+}
+
+/// Cells that the padded box of a triangle overlaps.
+pub fn triangle_cells(grid: &GridHeader, v: [Vec3; 3]) -> CellBox {
+    let low = sub(min(v[0], min(v[1], v[2])), [grid.pad; 3]);
+    let high = add(max(v[0], max(v[1], v[2])), [grid.pad; 3]);
+    overlapped_box(grid, low, high)
+}
+
+/// Whether `axis` parts the triangle from a box of the given half size around the origin.
+pub fn separates(axis: Vec3, half_size: Vec3, v: [Vec3; 3]) -> bool {
+    let [p0, p1, p2] = v.map(|v| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2]);
+    let reach = axis[0].abs() * half_size[0] + axis[1].abs() * half_size[1] + axis[2].abs() * half_size[2];
+    min_f32(p0, min_f32(p1, p2)) > reach || max_f32(p0, max_f32(p1, p2)) < -reach
+}
+
+/// Whether a triangle meets a padded cell, by separating axes; the box's axes are left to [`overlapped_box`].
+pub fn triangle_overlaps_cell(grid: &GridHeader, v: [Vec3; 3], cell: [u32; 3]) -> bool {
+    let low = boundary(grid.box_min, grid.cell_size, cell.map(|i| i as f32));
+    let half_cell = grid.cell_size.map(|size| size * 0.5);
+    let centre = add(low, half_cell);
+    let half_size = half_cell.map(|half| half + grid.pad * 2.0);
+    let [a, b, c] = v.map(|v| sub(v, centre));
+    let edges = [sub(b, a), sub(c, b), sub(a, c)];
+    let [e0, e1, _] = edges;
+    let normal = [e0[1] * e1[2] - e0[2] * e1[1], e0[2] * e1[0] - e0[0] * e1[2], e0[0] * e1[1] - e0[1] * e1[0]];
+    let apart = |axis| separates(axis, half_size, [a, b, c]);
+    !(apart(normal)
+        || edges.iter().any(|e| apart([0.0, -e[2], e[1]]))
+        || edges.iter().any(|e| apart([e[2], 0.0, -e[0]]))
+        || edges.iter().any(|e| apart([-e[1], e[0], 0.0])))
+}
