@@ -3,4 +3,5 @@
 
 mod image;
 mod repository;
+mod scene;
 mod traverse;

@@ -291,6 +291,11 @@ impl Source<'_> {
     fn toml_error(&self, error: &toml::de::Error) -> Error {
         // Several lines in places; the parts after the first say what was expected.
         let mut message = error.message().trim().replace('\n', "; ");
+        for (type_name, words) in [("u32", "a whole number, 0 or more"), ("f64", "a number")] {
+            if let Some(start) = message.strip_suffix(&format!("expected {type_name}")) {
+                message = format!("{start}expected {words}");
+            }
+        }
         // "unknown field `a`, expected one of `b`, `c`": all names stand in the message.
         if message.starts_with("unknown field") {
             let mut names = message.split('`').skip(1).step_by(2);
@@ -557,7 +562,8 @@ impl Builder<'_> {
         let diffuse_map = self.texture(&entry.diffuse_map, Use::Colour)?;
         let opacity_map = match &entry.opacity_map {
             Some(_) => self.texture(&entry.opacity_map, Use::Opacity)?,
-            None => self.texture(&entry.diffuse_map, Use::AlphaOfColour)?,
+            None if diffuse_map.is_some() => self.texture(&entry.diffuse_map, Use::AlphaOfColour)?,
+            None => None,
         };
         let specular_map = self.texture(&entry.specular_map, Use::Colour)?;
         let emission_map = self.texture(&entry.emission_map, Use::Colour)?;
