@@ -7,7 +7,7 @@
 
 #include "shared/occupancy.glsl"
 
-layout(constant_id = 1) const uint REPORT_TILE = 4096;
+layout(constant_id = 1) const uint BRICK_TILE = 1024;
 
 layout(push_constant, std430) uniform ReportSpine {
     GridwalkGrid grid;
@@ -16,7 +16,8 @@ layout(push_constant, std430) uniform ReportSpine {
 };
 
 void main() {
-    uint count = (grid.header.cell_count + REPORT_TILE - 1u) / REPORT_TILE;
+    uvec3 bricks_along = brick_resolution(grid.header.resolution);
+    uint count = (bricks_along.x * bricks_along.y * bricks_along.z + BRICK_TILE - 1u) / BRICK_TILE;
     uvec2 occupancy = uvec2(0u);
     for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
         occupancy = unite(occupancy, partials.occupancy[i]);

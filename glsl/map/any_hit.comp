@@ -41,7 +41,7 @@ void main() {
             if (LAST) {
                 result = GRIDWALK_UNFINISHED;
             } else {
-                walks.walk[index] = walk_save(walk);
+                walks.walk[index] = walk_save(walk, header);
                 state.state.unfinished = 1u;
             }
         }

@@ -46,7 +46,7 @@ void main() {
             if (LAST) {
                 hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_UNFINISHED);
             } else {
-                walks.walk[index] = walk_save(walk);
+                walks.walk[index] = walk_save(walk, header);
                 state.state.unfinished = 1u;
             }
         } else if (walk.best_triangle != GRIDWALK_MISS) {

@@ -14,7 +14,7 @@ layout(local_size_x = 1) in;
 
 layout(constant_id = 1) const uint MAP_SIZE = 64;
 layout(constant_id = 2) const uint SORT_BITS = 8;
-layout(constant_id = 3) const uint REPORT_TILE = 4096;
+layout(constant_id = 3) const uint BRICK_TILE = 1024;
 
 layout(push_constant, std430) uniform Configure {
     BoundsIn scene;
@@ -26,6 +26,7 @@ layout(push_constant, std430) uniform Configure {
     Cells cells;
     References references;
     Triangles triangles;
+    Bricks bricks;
     uint triangle_count;
     uint cell_capacity;
     float density;
@@ -133,7 +134,7 @@ void main() {
     header.cells = uvec2(cells);
     header.references = uvec2(references);
     header.triangles = uvec2(triangles);
-    header.reserved = uvec2(0u);
+    header.bricks = uvec2(bricks);
     grid.header = header;
 
     uint largest_key = exact != 0u ? cell_count : cell_count - 1u;
@@ -149,7 +150,10 @@ void main() {
     state.state = next;
 
     arguments.arguments.clear_cells = uvec4(split_workgroups((cell_count + CELLS_EACH - 1u) / CELLS_EACH, MAP_SIZE), 0u);
-    arguments.arguments.report = uvec4(split_workgroups(cell_count, REPORT_TILE), 0u);
+    uvec3 bricks_along = brick_resolution(resolution);
+    uint brick_count = bricks_along.x * bricks_along.y * bricks_along.z;
+    arguments.arguments.brick_reduce = uvec4(split_workgroups((brick_count + BRICK_TILE - 1u) / BRICK_TILE, 1u), 0u);
+    arguments.arguments.brick_distance = uvec4(split_workgroups(brick_count, MAP_SIZE), 0u);
 
     report.report.triangles = triangle_count;
     report.report.dropped = bounds.dropped;

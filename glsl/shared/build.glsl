@@ -32,7 +32,8 @@ struct DispatchArguments {
     uvec4 table_scan[MAX_PASSES];
     uvec4 table_spine[MAX_PASSES];
     uvec4 cell_ranges;
-    uvec4 report;
+    uvec4 brick_reduce;
+    uvec4 brick_distance;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer StateIn { BuildState state; };

@@ -11,6 +11,19 @@ layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Ref
 // Three vertices a triangle, the fourth component unused; all zero for a dropped triangle, which no ray hits.
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
 
+// A brick is a block of 4^3 cells. Bit x + 4 y + 16 z of the mask (low word first) is set for a cell that is not empty. All bricks closer
+// than `distance`, in the maximum norm, are empty: 0 for a brick that is not.
+struct Brick {
+    uvec2 mask;
+    uint distance;
+    uint reserved;
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Bricks { Brick brick[]; };
+
+const uint BRICK_SIZE = 4u;
+
+uvec3 brick_resolution(uvec3 resolution) { return (resolution + uvec3(BRICK_SIZE - 1u)) / BRICK_SIZE; }
+
 // Host twin: gridwalk_core::layout::GridHeader.
 struct GridHeader {
     vec3 box_min; // padded
@@ -26,7 +39,7 @@ struct GridHeader {
     uvec2 cells;
     uvec2 references;
     uvec2 triangles;
-    uvec2 reserved;
+    uvec2 bricks;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };

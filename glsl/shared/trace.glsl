@@ -32,15 +32,14 @@ struct Counters {
     uint cells; // cells visited that are not empty
 };
 
-WalkState walk_save(Walk walk) {
-    return WalkState(1u, uint(walk.id), walk.reference, walk.exit, walk.best_s, walk.best_u, walk.best_v, walk.best_triangle);
+WalkState walk_save(Walk walk, GridHeader grid) {
+    return WalkState(1u, cell_id(uvec3(walk.cell), grid.resolution), walk.reference, walk.exit, walk.best_s, walk.best_u, walk.best_v, walk.best_triangle);
 }
 
 void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
     uint slice = grid.resolution.x * grid.resolution.y;
     uint in_slice = saved.cell % slice;
     walk.cell = ivec3(in_slice % grid.resolution.x, in_slice / grid.resolution.x, saved.cell / slice);
-    walk.id = int(saved.cell);
     walk.exit = saved.exit;
     walk_enter(walk, grid);
     walk.reference = saved.reference;

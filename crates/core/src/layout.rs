@@ -41,8 +41,20 @@ pub struct GridHeader {
     pub references: [u32; 2],
     /// Device address of the triangles.
     pub triangles: [u32; 2],
+    /// Device address of the bricks.
+    pub bricks: [u32; 2],
+}
+
+/// A block of 4^3 cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Brick {
+    /// Bit x + 4 y + 16 z, low word first, of each cell that is not empty.
+    pub mask: [u32; 2],
+    /// All bricks closer than this, in the maximum norm, are empty.
+    pub distance: u32,
     /// Zero.
-    pub reserved: [u32; 2],
+    pub reserved: u32,
 }
 
 /// Numbers that later steps of a build take from earlier ones.
@@ -83,8 +95,10 @@ pub struct DispatchArguments {
     pub table_spine: [[u32; 4]; MAX_PASSES],
     /// Of `cell_ranges`.
     pub cell_ranges: [u32; 4],
-    /// Of `report_reduce`.
-    pub report: [u32; 4],
+    /// Of `brick_reduce`.
+    pub brick_reduce: [u32; 4],
+    /// Of `brick_distance_x`, `_y` and `_z`.
+    pub brick_distance: [u32; 4],
 }
 
 /// The box of some triangles.

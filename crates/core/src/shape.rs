@@ -12,8 +12,10 @@ pub struct Shape {
     pub scan_size: u32,
     /// Elements an invocation of the scan.
     pub scan_items: u32,
-    /// Triangles, or cells, an invocation of the reductions.
+    /// Triangles an invocation of the scene box's reduction.
     pub reduce_items: u32,
+    /// Bricks an invocation of `brick_reduce`.
+    pub reduce_bricks: u32,
     /// Bits a digit of the sort.
     pub sort_bits: u32,
     /// Invocations a workgroup of the sort; 2^`sort_bits` * `sort_size` <= 4,096.
@@ -31,6 +33,7 @@ impl Shape {
         scan_size: 16,
         scan_items: 256,
         reduce_items: 64,
+        reduce_bricks: 4,
         sort_bits: 8,
         sort_size: 8,
         sort_keys: 512,
@@ -43,6 +46,7 @@ impl Shape {
         scan_size: 256,
         scan_items: 16,
         reduce_items: 8,
+        reduce_bricks: 1,
         sort_bits: 4,
         sort_size: 256,
         sort_keys: 16,
@@ -54,9 +58,14 @@ impl Shape {
         self.scan_size * self.scan_items
     }
 
-    /// Triangles, or cells, a workgroup of the reductions.
-    pub const fn report_tile(&self) -> u32 {
+    /// Triangles a workgroup of the scene box's reduction.
+    pub const fn bounds_tile(&self) -> u32 {
         self.scan_size * self.reduce_items
+    }
+
+    /// Bricks a workgroup of `brick_reduce`.
+    pub const fn brick_tile(&self) -> u32 {
+        self.scan_size * self.reduce_bricks
     }
 
     /// Keys a workgroup of the sort.
@@ -66,7 +75,7 @@ impl Shape {
 
     /// Workgroups that reduce the scene box; at least one, so that an empty scene has a box of no triangle.
     pub const fn bounds_tiles(&self, triangles: u32) -> u32 {
-        let tiles = triangles.div_ceil(self.report_tile());
+        let tiles = triangles.div_ceil(self.bounds_tile());
         if tiles == 0 { 1 } else { tiles }
     }
 
@@ -76,14 +85,14 @@ impl Shape {
     }
 
     /// The value of a kernel's specialization constant by its name.
-    pub fn constant(&self, kernel: &Kernel, name: &str) -> Option<u32> {
+    pub fn constant(&self, name: &str) -> Option<u32> {
         Some(match name {
             "MAP_SIZE" => self.map_size,
             "ITEMS_EACH" => self.scan_items,
             "SCAN_TILE" => self.scan_tile(),
             "TRIANGLES_EACH" => self.reduce_items,
-            "CELLS_EACH" if kernel.name == "report_reduce" => self.reduce_items,
-            "REPORT_TILE" => self.report_tile(),
+            "BRICKS_EACH" => self.reduce_bricks,
+            "BRICK_TILE" => self.brick_tile(),
             "SORT_BITS" => self.sort_bits,
             "KEYS_EACH" => self.sort_keys,
             "SORT_TILE" => self.sort_tile(),
@@ -96,7 +105,7 @@ impl Shape {
     pub fn local_size(&self, kernel: &Kernel) -> u32 {
         match kernel.name {
             "sort_histogram" | "sort_scatter" => self.sort_size,
-            "bounds_reduce" | "bounds_spine" | "report_reduce" | "report_spine" | "scan_reduce" | "scan_spine" | "scan_downsweep" => {
+            "bounds_reduce" | "bounds_spine" | "brick_reduce" | "report_spine" | "scan_reduce" | "scan_spine" | "scan_downsweep" => {
                 self.scan_size
             }
             _ => self.map_size,

@@ -22,11 +22,14 @@
 #ifndef GRIDWALK_GLSL
 #define GRIDWALK_GLSL
 
-// The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), in the moved frame.
+// The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), in the moved frame, with jumps
+// across empty space: a step leaves a block of cells, which is one cell where its brick holds triangles, and else all bricks around that
+// are known to be empty.
 //
-// The integer cell is the truth: distances to boundaries are computed from it and never accumulated. A step moves along one axis. A cell
-// is entered where its predecessor was left, and exits never decrease, so for every s between a cell's entry and its exit the point of
-// the ray lies within pad / 2 of the cell: each hit with s <= exit has been found when the walk leaves a cell.
+// The integer cell is the truth: distances to boundaries are computed from it and never accumulated. A step moves along one axis by the
+// boundary, and along the others, inside of the block, to where the ray's point lies, never backwards. A block is entered where its
+// predecessor was left, and exits never decrease, so for every s between a block's entry and its exit the point of the ray lies within
+// pad / 2 of it: each hit with s <= exit has been found when the walk leaves a block.
 #ifndef WALK_GLSL
 #define WALK_GLSL
 
@@ -72,6 +75,19 @@ layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Ref
 // Three vertices a triangle, the fourth component unused; all zero for a dropped triangle, which no ray hits.
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
 
+// A brick is a block of 4^3 cells. Bit x + 4 y + 16 z of the mask (low word first) is set for a cell that is not empty. All bricks closer
+// than `distance`, in the maximum norm, are empty: 0 for a brick that is not.
+struct Brick {
+    uvec2 mask;
+    uint distance;
+    uint reserved;
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Bricks { Brick brick[]; };
+
+const uint BRICK_SIZE = 4u;
+
+uvec3 brick_resolution(uvec3 resolution) { return (resolution + uvec3(BRICK_SIZE - 1u)) / BRICK_SIZE; }
+
 // Host twin: gridwalk_core::layout::GridHeader.
 struct GridHeader {
     vec3 box_min; // padded
@@ -87,7 +103,7 @@ struct GridHeader {
     uvec2 cells;
     uvec2 references;
     uvec2 triangles;
-    uvec2 reserved;
+    uvec2 bricks;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };
@@ -234,10 +250,10 @@ struct Walk {
     MovedRay ray;
     vec3 inverse; // of the direction; 0 where that is 0
     vec3 never; // added to the distances: beyond any where the direction is 0
-    vec3 ahead; // 1 where the boundary ahead is the cell's upper one
-    ivec3 stride; // cell ids along each axis, with the sign of the direction
+    bvec3 up; // the direction is positive
     ivec3 cell;
-    int id;
+    ivec3 low; // block of cells: [low, high)
+    ivec3 high;
     vec3 boundaries; // s of the boundary ahead along each axis
     float exit;
     uint reference; // next in the cell's list
@@ -250,17 +266,39 @@ struct Walk {
 
 const float BEYOND = 3.0e38;
 
-void walk_measure(inout Walk walk, GridHeader grid) {
-    vec3 edges = boundary(grid.box_min, grid.cell_size, vec3(walk.cell) + walk.ahead);
+ivec3 select(bvec3 which, ivec3 yes, ivec3 no) {
+    return ivec3(which.x ? yes.x : no.x, which.y ? yes.y : no.y, which.z ? yes.z : no.z);
+}
+
+// Looks at the cell: its list, the block around it, and where the ray leaves that.
+void walk_enter(inout Walk walk, GridHeader grid) {
+    ivec3 bricks_along = ivec3(brick_resolution(grid.resolution));
+    ivec3 at = walk.cell >> 2;
+    Brick brick = Bricks(grid.bricks).brick[at.x + bricks_along.x * (at.y + bricks_along.y * at.z)];
+    ivec3 inner = walk.cell & 3;
+    uint bit = uint(inner.x | (inner.y << 2) | ((inner.z & 1) << 4));
+    uint word = inner.z < 2 ? brick.mask.x : brick.mask.y;
+    walk.reference = 0u;
+    walk.list_end = 0u;
+    if (((word >> bit) & 1u) != 0u) {
+        uvec2 range = Cells(grid.cells).range[cell_id(uvec3(walk.cell), grid.resolution)];
+        walk.reference = range.x;
+        walk.list_end = range.y;
+    }
+    int reach = int(brick.distance);
+    bool jump = reach != 0;
+    walk.low = jump ? max((at - ivec3(reach - 1)) << 2, ivec3(0)) : walk.cell;
+    walk.high = jump ? min((at + ivec3(reach)) << 2, ivec3(grid.resolution)) : walk.cell + ivec3(1);
+    vec3 edges = boundary(grid.box_min, grid.cell_size, vec3(select(walk.up, walk.high, walk.low)));
     walk.boundaries = (edges - walk.ray.origin) * walk.inverse + walk.never;
     walk.exit = max(walk.exit, min(walk.boundaries.x, min(walk.boundaries.y, walk.boundaries.z)));
 }
 
-void walk_enter(inout Walk walk, GridHeader grid) {
-    walk_measure(walk, grid);
-    uvec2 range = Cells(grid.cells).range[walk.id];
-    walk.reference = range.x;
-    walk.list_end = range.y;
+ivec3 walk_cell_at(Walk walk, GridHeader grid, float s) {
+    vec3 travelled = s * walk.ray.direction;
+    vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
+    // Clamped as floats: a conversion out of range may give anything.
+    return ivec3(min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0)));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
@@ -268,17 +306,10 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
     Walk walk;
     walk.ray = ray;
     bvec3 still = equal(ray.direction, vec3(0.0));
-    bvec3 up = greaterThan(ray.direction, vec3(0.0));
+    walk.up = greaterThan(ray.direction, vec3(0.0));
     walk.inverse = vec3(still.x ? 0.0 : 1.0 / ray.direction.x, still.y ? 0.0 : 1.0 / ray.direction.y, still.z ? 0.0 : 1.0 / ray.direction.z);
     walk.never = vec3(still.x ? BEYOND : 0.0, still.y ? BEYOND : 0.0, still.z ? BEYOND : 0.0);
-    walk.ahead = vec3(up);
-    ivec3 extent = ivec3(grid.resolution);
-    ivec3 strides = ivec3(1, extent.x, extent.x * extent.y);
-    walk.stride = ivec3(up.x ? strides.x : -strides.x, up.y ? strides.y : -strides.y, up.z ? strides.z : -strides.z);
-    vec3 last = vec3(grid.resolution) - vec3(1.0);
-    vec3 first = min(max(floor((ray.origin - grid.box_min) * grid.inverse_cell_size), vec3(0.0)), last);
-    walk.cell = ivec3(first);
-    walk.id = walk.cell.x + walk.cell.y * strides.y + walk.cell.z * strides.z;
+    walk.cell = walk_cell_at(walk, grid, 0.0);
     walk.exit = 0.0;
     walk.best_s = ray.s_max;
     walk.best_u = 0.0;
@@ -288,14 +319,16 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
     return walk;
 }
 
-// Into the next cell; false outside of the grid.
+// Into the next block; false outside of the grid.
 bool walk_step(inout Walk walk, GridHeader grid) {
     bool x = walk.boundaries.x <= walk.boundaries.y && walk.boundaries.x <= walk.boundaries.z;
     bool y = !x && walk.boundaries.y <= walk.boundaries.z;
-    bool z = !x && !y;
-    int towards = (x ? walk.stride.x : (y ? walk.stride.y : walk.stride.z)) > 0 ? 1 : -1;
-    walk.cell += ivec3(x ? towards : 0, y ? towards : 0, z ? towards : 0);
-    walk.id += x ? walk.stride.x : (y ? walk.stride.y : walk.stride.z);
+    bvec3 along = bvec3(x, y, !x && !y);
+    ivec3 last = walk.high - ivec3(1);
+    ivec3 inside = walk_cell_at(walk, grid, walk.exit);
+    inside = min(max(inside, select(walk.up, walk.cell, walk.low)), select(walk.up, last, walk.cell));
+    ivec3 beyond = select(walk.up, walk.high, walk.low - ivec3(1));
+    walk.cell = select(along, beyond, inside);
     int coordinate = x ? walk.cell.x : (y ? walk.cell.y : walk.cell.z);
     uint count = x ? grid.resolution.x : (y ? grid.resolution.y : grid.resolution.z);
     if (uint(coordinate) >= count) {

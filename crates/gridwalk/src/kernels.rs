@@ -65,6 +65,54 @@ pub static BOUNDS_SPINE: Kernel = Kernel {
     spec_constants: &[],
 };
 
+/// Kernel `brick_distance_x`, from `glsl/map/brick_distance_x.comp`.
+pub static BRICK_DISTANCE_X: Kernel = Kernel {
+    name: "brick_distance_x",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/brick_distance_x.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("grid", Access::Read), ("bricks", Access::Read), ("distances", Access::Write)],
+    spec_constants: &[],
+};
+
+/// Kernel `brick_distance_y`, from `glsl/map/brick_distance_y.comp`.
+pub static BRICK_DISTANCE_Y: Kernel = Kernel {
+    name: "brick_distance_y",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/brick_distance_y.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("grid", Access::Read), ("distances_x", Access::Read), ("distances", Access::Write)],
+    spec_constants: &[],
+};
+
+/// Kernel `brick_distance_z`, from `glsl/map/brick_distance_z.comp`.
+pub static BRICK_DISTANCE_Z: Kernel = Kernel {
+    name: "brick_distance_z",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/brick_distance_z.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("grid", Access::Read), ("distances_y", Access::Read), ("bricks", Access::ReadWrite)],
+    spec_constants: &[],
+};
+
+/// Kernel `brick_reduce`, from `glsl/cooperative/brick_reduce.comp`.
+pub static BRICK_REDUCE: Kernel = Kernel {
+    name: "brick_reduce",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/brick_reduce.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 32,
+    accesses: &[("grid", Access::Read), ("cells", Access::Read), ("bricks", Access::Write), ("partials", Access::Write)],
+    spec_constants: &[(1, "BRICKS_EACH", 4)],
+};
+
 /// Kernel `brute_force`, from `glsl/map/brute_force.comp`.
 pub static BRUTE_FORCE: Kernel = Kernel {
     name: "brute_force",
@@ -145,7 +193,7 @@ pub static CONFIGURE: Kernel = Kernel {
     spirv: spirv!("../spirv/configure.spv"),
     local_size: [1, 1, 1],
     local_size_ids: [None, None, None],
-    push_constant_size: 96,
+    push_constant_size: 104,
     accesses: &[
         ("scene", Access::Read),
         ("grid", Access::Write),
@@ -155,8 +203,9 @@ pub static CONFIGURE: Kernel = Kernel {
         ("cells", Access::Read),
         ("references", Access::Read),
         ("triangles", Access::Read),
+        ("bricks", Access::Read),
     ],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "REPORT_TILE", 4096)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "BRICK_TILE", 1024)],
 };
 
 /// Kernel `overlap_count`, from `glsl/map/overlap_count.comp`.
@@ -210,18 +259,6 @@ pub static PAIR_ARGS: Kernel = Kernel {
     spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "SORT_TILE", 4096), (4, "SCAN_TILE", 4096), (5, "PAIRS_EACH", 16)],
 };
 
-/// Kernel `report_reduce`, from `glsl/cooperative/report_reduce.comp`.
-pub static REPORT_REDUCE: Kernel = Kernel {
-    name: "report_reduce",
-    kind: Kind::Cooperative,
-    spirv: spirv!("../spirv/report_reduce.spv"),
-    local_size: [256, 1, 1],
-    local_size_ids: [Some(0), None, None],
-    push_constant_size: 24,
-    accesses: &[("grid", Access::Read), ("cells", Access::Read), ("partials", Access::Write)],
-    spec_constants: &[(1, "CELLS_EACH", 16)],
-};
-
 /// Kernel `report_spine`, from `glsl/cooperative/report_spine.comp`.
 pub static REPORT_SPINE: Kernel = Kernel {
     name: "report_spine",
@@ -231,7 +268,7 @@ pub static REPORT_SPINE: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("grid", Access::Read), ("partials", Access::Read), ("report", Access::Write)],
-    spec_constants: &[(1, "REPORT_TILE", 4096)],
+    spec_constants: &[(1, "BRICK_TILE", 1024)],
 };
 
 /// Kernel `scan_downsweep`, from `glsl/cooperative/scan_downsweep.comp`.
@@ -330,6 +367,10 @@ pub static ALL: &[&Kernel] = &[
     &ANY_HIT,
     &BOUNDS_REDUCE,
     &BOUNDS_SPINE,
+    &BRICK_DISTANCE_X,
+    &BRICK_DISTANCE_Y,
+    &BRICK_DISTANCE_Z,
+    &BRICK_REDUCE,
     &BRUTE_FORCE,
     &CELL_RANGES,
     &CLEAR_CELLS,
@@ -339,7 +380,6 @@ pub static ALL: &[&Kernel] = &[
     &OVERLAP_COUNT,
     &OVERLAP_EMIT,
     &PAIR_ARGS,
-    &REPORT_REDUCE,
     &REPORT_SPINE,
     &SCAN_DOWNSWEEP,
     &SCAN_REDUCE,
@@ -405,6 +445,48 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, partial_count) == 16);
     assert!(size(|host: &Host| &host.partial_count) == 4);
     assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::BrickDistanceX as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, bricks) == 8);
+    assert!(size(|host: &Host| &host.bricks) == 8);
+    assert!(core::mem::offset_of!(Host, distances) == 16);
+    assert!(size(|host: &Host| &host.distances) == 8);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::BrickDistanceY as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, distances_x) == 8);
+    assert!(size(|host: &Host| &host.distances_x) == 8);
+    assert!(core::mem::offset_of!(Host, distances) == 16);
+    assert!(size(|host: &Host| &host.distances) == 8);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::BrickDistanceZ as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, distances_y) == 8);
+    assert!(size(|host: &Host| &host.distances_y) == 8);
+    assert!(core::mem::offset_of!(Host, bricks) == 16);
+    assert!(size(|host: &Host| &host.bricks) == 8);
+    assert!(size_of::<Host>() == 24);
+};
+const _: () = {
+    use crate::push::BrickReduce as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 8);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(core::mem::offset_of!(Host, bricks) == 16);
+    assert!(size(|host: &Host| &host.bricks) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 24);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(size_of::<Host>() == 32);
 };
 const _: () = {
     use crate::push::BruteForce as Host;
@@ -513,21 +595,23 @@ const _: () = {
     assert!(size(|host: &Host| &host.references) == 8);
     assert!(core::mem::offset_of!(Host, triangles) == 56);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, triangle_count) == 64);
+    assert!(core::mem::offset_of!(Host, bricks) == 64);
+    assert!(size(|host: &Host| &host.bricks) == 8);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 72);
     assert!(size(|host: &Host| &host.triangle_count) == 4);
-    assert!(core::mem::offset_of!(Host, cell_capacity) == 68);
+    assert!(core::mem::offset_of!(Host, cell_capacity) == 76);
     assert!(size(|host: &Host| &host.cell_capacity) == 4);
-    assert!(core::mem::offset_of!(Host, density) == 72);
+    assert!(core::mem::offset_of!(Host, density) == 80);
     assert!(size(|host: &Host| &host.density) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_x) == 76);
+    assert!(core::mem::offset_of!(Host, fixed_x) == 84);
     assert!(size(|host: &Host| &host.fixed_x) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_y) == 80);
+    assert!(core::mem::offset_of!(Host, fixed_y) == 88);
     assert!(size(|host: &Host| &host.fixed_y) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_z) == 84);
+    assert!(core::mem::offset_of!(Host, fixed_z) == 92);
     assert!(size(|host: &Host| &host.fixed_z) == 4);
-    assert!(core::mem::offset_of!(Host, exact) == 88);
+    assert!(core::mem::offset_of!(Host, exact) == 96);
     assert!(size(|host: &Host| &host.exact) == 4);
-    assert!(size_of::<Host>() == 96);
+    assert!(size_of::<Host>() == 104);
 };
 const _: () = {
     use gridwalk_core::layout::DispatchArguments as Host;
@@ -543,8 +627,10 @@ const _: () = {
     assert!(size(|host: &Host| &host.table_spine) == 128);
     assert!(core::mem::offset_of!(Host, cell_ranges) == 416);
     assert!(size(|host: &Host| &host.cell_ranges) == 16);
-    assert!(core::mem::offset_of!(Host, report) == 432);
-    assert!(size(|host: &Host| &host.report) == 16);
+    assert!(core::mem::offset_of!(Host, brick_reduce) == 432);
+    assert!(size(|host: &Host| &host.brick_reduce) == 16);
+    assert!(core::mem::offset_of!(Host, brick_distance) == 448);
+    assert!(size(|host: &Host| &host.brick_distance) == 16);
 };
 const _: () = {
     use gridwalk_core::layout::GridHeader as Host;
@@ -574,8 +660,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.references) == 8);
     assert!(core::mem::offset_of!(Host, triangles) == 96);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, reserved) == 104);
-    assert!(size(|host: &Host| &host.reserved) == 8);
+    assert!(core::mem::offset_of!(Host, bricks) == 104);
+    assert!(size(|host: &Host| &host.bricks) == 8);
 };
 const _: () = {
     use gridwalk_core::Hit as Host;
@@ -685,16 +771,6 @@ const _: () = {
     assert!(size(|host: &Host| &host.box_max) == 12);
     assert!(core::mem::offset_of!(Host, reserved) == 76);
     assert!(size(|host: &Host| &host.reserved) == 4);
-};
-const _: () = {
-    use crate::push::ReportReduce as Host;
-    assert!(core::mem::offset_of!(Host, grid) == 0);
-    assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 8);
-    assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 16);
-    assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(size_of::<Host>() == 24);
 };
 const _: () = {
     use crate::push::ReportSpine as Host;

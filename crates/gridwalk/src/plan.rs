@@ -22,6 +22,7 @@ pub enum Buffer {
     Cells,
     References,
     Triangles,
+    Bricks,
     Report,
     State,
     Arguments,
@@ -34,6 +35,8 @@ pub enum Buffer {
     ValuesA,
     Table,
     Occupancy,
+    DistancesX,
+    DistancesY,
     Rays,
     Hits,
     RayCount,
@@ -44,7 +47,7 @@ pub enum Buffer {
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 25] = [
+    pub const ALL: [Buffer; 28] = [
         Buffer::Unused,
         Buffer::Positions,
         Buffer::Indices,
@@ -52,6 +55,7 @@ impl Buffer {
         Buffer::Cells,
         Buffer::References,
         Buffer::Triangles,
+        Buffer::Bricks,
         Buffer::Report,
         Buffer::State,
         Buffer::Arguments,
@@ -64,6 +68,8 @@ impl Buffer {
         Buffer::ValuesA,
         Buffer::Table,
         Buffer::Occupancy,
+        Buffer::DistancesX,
+        Buffer::DistancesY,
         Buffer::Rays,
         Buffer::Hits,
         Buffer::RayCount,
@@ -272,6 +278,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
             cells: Cells.token(),
             references: References.token(),
             triangles: Triangles.token(),
+            bricks: Bricks.token(),
             triangle_count,
             cell_capacity: capacity.cells,
             density: inputs.density,
@@ -379,16 +386,23 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     ));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
-        &REPORT_REDUCE,
-        argument(offset_of!(DispatchArguments, report)),
-        push::ReportReduce { grid, cells: Cells.token(), partials: Occupancy.token() },
+        &BRICK_REDUCE,
+        argument(offset_of!(DispatchArguments, brick_reduce)),
+        push::BrickReduce { grid, cells: Cells.token(), bricks: Bricks.token(), partials: Occupancy.token() },
     ));
     plan.barrier(Barrier::Shader);
+    let bricks = argument(offset_of!(DispatchArguments, brick_distance));
+    let (x, y) = (DistancesX.token(), DistancesY.token());
+    plan.step(Step::new(&BRICK_DISTANCE_X, bricks, push::BrickDistanceX { grid, bricks: Bricks.token(), distances: x }));
     plan.step(Step::new(
         &REPORT_SPINE,
         Dispatch::Direct([1, 1, 1]),
         push::ReportSpine { grid, partials: Occupancy.token(), report: Report.token() },
     ));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(&BRICK_DISTANCE_Y, bricks, push::BrickDistanceY { grid, distances_x: x, distances: y }));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(&BRICK_DISTANCE_Z, bricks, push::BrickDistanceZ { grid, distances_y: y, bricks: Bricks.token() }));
     plan
 }
 

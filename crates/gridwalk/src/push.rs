@@ -24,12 +24,13 @@ pub(crate) struct BoundsSpine {
     pub(crate) padding: u32,
 }
 
-/// Of kernel `report_reduce`.
+/// Of kernel `brick_reduce`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct ReportReduce {
+pub(crate) struct BrickReduce {
     pub(crate) grid: u64,
     pub(crate) cells: u64,
+    pub(crate) bricks: u64,
     pub(crate) partials: u64,
 }
 
@@ -179,6 +180,7 @@ pub(crate) struct Configure {
     pub(crate) cells: u64,
     pub(crate) references: u64,
     pub(crate) triangles: u64,
+    pub(crate) bricks: u64,
     pub(crate) triangle_count: u32,
     pub(crate) cell_capacity: u32,
     pub(crate) density: f32,
@@ -243,4 +245,31 @@ pub(crate) struct TraceArgs {
 #[repr(C)]
 pub(crate) struct TraceContinueArgs {
     pub(crate) state: u64,
+}
+
+/// Of kernel `brick_distance_x`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct BrickDistanceX {
+    pub(crate) grid: u64,
+    pub(crate) bricks: u64,
+    pub(crate) distances: u64,
+}
+
+/// Of kernel `brick_distance_y`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct BrickDistanceY {
+    pub(crate) grid: u64,
+    pub(crate) distances_x: u64,
+    pub(crate) distances: u64,
+}
+
+/// Of kernel `brick_distance_z`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct BrickDistanceZ {
+    pub(crate) grid: u64,
+    pub(crate) distances_y: u64,
+    pub(crate) bricks: u64,
 }

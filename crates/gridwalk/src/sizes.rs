@@ -1,7 +1,7 @@
 //! Every byte offset of the library: where the parts of a region lie, and how large regions are.
 
 use ash::vk;
-use gridwalk_core::layout::{Bounds, BuildState, DispatchArguments, GridHeader, MAX_PASSES, Report, TraceState, WalkState};
+use gridwalk_core::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, MAX_PASSES, Report, TraceState, WalkState};
 
 use crate::error::{Error, Result};
 use crate::shape::Shape;
@@ -73,12 +73,19 @@ impl Packer {
 /// Cells that one invocation of `clear_cells` clears; its memory is rounded up to it.
 pub(crate) const CELLS_EACH: u64 = 8;
 
+/// Bricks of 4^3 cells that a grid of so many cells can have. With at most 4,096 cells along an axis the product of (n + 3) / 4 over the
+/// axes is greatest for a grid one cell thick: (a + 3) (b + 3) / 16 <= a b / 16 + 1,537.
+fn brick_capacity(capacity: &Capacity) -> u64 {
+    u64::from(capacity.cells) / 16 + 1_540
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GridLayout {
     pub(crate) header: Part,
     pub(crate) cells: Part,
     pub(crate) references: Part,
     pub(crate) triangles: Part,
+    pub(crate) bricks: Part,
     pub(crate) size: u64,
 }
 
@@ -90,6 +97,7 @@ impl GridLayout {
             cells: packer.part(u64::from(capacity.cells.max(1)).next_multiple_of(CELLS_EACH) * 8),
             references: packer.part(u64::from(capacity.pairs.max(1)) * 4),
             triangles: packer.part(u64::from(capacity.triangles.max(1)) * 48),
+            bricks: packer.part(brick_capacity(capacity) * size_of::<Brick>() as u64),
             size: packer.0,
         }
     }
@@ -108,6 +116,8 @@ pub(crate) struct ScratchLayout {
     pub(crate) values_a: Part,
     pub(crate) table: Part,
     pub(crate) occupancy: Part,
+    pub(crate) distances_x: Part,
+    pub(crate) distances_y: Part,
     pub(crate) size: u64,
 }
 
@@ -128,7 +138,9 @@ impl ScratchLayout {
             keys_b: packer.part(pairs * 4),
             values_a: packer.part(pairs * 4),
             table: packer.part(table.max(1) * 4),
-            occupancy: packer.part(u64::from(capacity.cells.max(1)).div_ceil(u64::from(shape.report_tile())) * 8),
+            occupancy: packer.part(brick_capacity(capacity).div_ceil(u64::from(shape.brick_tile())) * 8),
+            distances_x: packer.part(brick_capacity(capacity) * 4),
+            distances_y: packer.part(brick_capacity(capacity) * 4),
             size: packer.0,
         }
     }

@@ -248,7 +248,7 @@ impl Tracer {
             }
             for &(id, name, default) in kernel.spec_constants {
                 let launch = constants.iter().position(|constant| *constant == name).map(|bit| (variant >> bit) & 1);
-                add(id, launch.or_else(|| self.shape.constant(kernel, name)).unwrap_or(default));
+                add(id, launch.or_else(|| self.shape.constant(name)).unwrap_or(default));
             }
             let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&data));
             let stage = vk::PipelineShaderStageCreateInfo::default()
@@ -384,6 +384,7 @@ impl Tracer {
             Buffer::Cells => in_grid(grid.cells),
             Buffer::References => in_grid(grid.references),
             Buffer::Triangles => in_grid(grid.triangles),
+            Buffer::Bricks => in_grid(grid.bricks),
             Buffer::State => in_scratch(scratch.state),
             Buffer::Arguments => in_scratch(scratch.arguments),
             Buffer::SceneBounds => in_scratch(scratch.scene_bounds),
@@ -395,6 +396,8 @@ impl Tracer {
             Buffer::ValuesA => in_scratch(scratch.values_a),
             Buffer::Table => in_scratch(scratch.table),
             Buffer::Occupancy => in_scratch(scratch.occupancy),
+            Buffer::DistancesX => in_scratch(scratch.distances_x),
+            Buffer::DistancesY => in_scratch(scratch.distances_y),
             Buffer::Unused | Buffer::Rays | Buffer::Hits | Buffer::RayCount | Buffer::TraceState | Buffer::Walks | Buffer::Counters => {
                 Region::NONE
             }

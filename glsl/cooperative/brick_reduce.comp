@@ -1,0 +1,58 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// Which cells of each brick are in use, for the walk; and cells in use and longest list of a tile of bricks, for the report.
+
+#include "shared/occupancy.glsl"
+
+layout(constant_id = 1) const uint BRICKS_EACH = 4;
+
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer BricksOut { Brick brick[]; };
+
+layout(push_constant, std430) uniform BrickReduce {
+    GridwalkGrid grid;
+    Cells cells;
+    BricksOut bricks;
+    OccupancyOut partials;
+};
+
+void main() {
+    uvec3 resolution = grid.header.resolution;
+    uvec3 bricks_along = brick_resolution(resolution);
+    uint brick_count = bricks_along.x * bricks_along.y * bricks_along.z;
+    uint tile = workgroup_index();
+    uint first = tile * gl_WorkGroupSize.x * BRICKS_EACH;
+    uvec2 occupancy = uvec2(0u);
+    for (uint i = 0u; i < BRICKS_EACH; ++i) {
+        uint index = first + i * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+        if (index < brick_count) {
+            uint slice = index / bricks_along.x;
+            uvec3 low = BRICK_SIZE * uvec3(index - slice * bricks_along.x, slice % bricks_along.y, slice / bricks_along.y);
+            uvec3 size = min(uvec3(BRICK_SIZE), resolution - low);
+            uvec2 mask = uvec2(0u);
+            for (uint z = 0u; z < size.z; ++z) {
+                for (uint y = 0u; y < size.y; ++y) {
+                    uint row = cell_id(low + uvec3(0u, y, z), resolution);
+                    uint bits = 0u;
+                    for (uint x = 0u; x < size.x; ++x) {
+                        uvec2 range = cells.range[row + x];
+                        bits |= uint(range.y != 0u) << x;
+                        occupancy.y = max(occupancy.y, range.y - range.x);
+                    }
+                    uint shift = BRICK_SIZE * y + 16u * (z & 1u);
+                    mask.x |= z < 2u ? bits << shift : 0u;
+                    mask.y |= z < 2u ? 0u : bits << shift;
+                }
+            }
+            occupancy.x += uint(bitCount(mask.x) + bitCount(mask.y));
+            // The distance is measured by the next steps.
+            bricks.brick[index] = Brick(mask, 0u, 0u);
+        }
+    }
+    occupancy = workgroup_occupancy(occupancy);
+    if (gl_LocalInvocationID.x == 0u && first < brick_count) {
+        partials.occupancy[tile] = occupancy;
+    }
+}
