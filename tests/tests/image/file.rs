@@ -24,7 +24,7 @@ fn a_failure_leaves_what_was_there() {
     });
     assert!(matches!(result, Err(Error::Encode { .. })));
     assert_eq!(fs::read(&path).unwrap(), b"first");
-    assert_eq!(entries(folder.path()), [path.clone()], "no temporary file is left");
+    assert_eq!(entries(folder.path()), std::slice::from_ref(&path), "no temporary file is left");
     write(&path, Overwrite::Replace, b"second").unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"second");
 }
