@@ -8,6 +8,14 @@ pub fn boundary(box_min: Vec3, cell_size: Vec3, i: Vec3) -> Vec3 {
     add(box_min, offset)
 }
 
+/// Cells along each axis of a brick.
+pub const BRICK_SIZE: u32 = 4;
+
+/// Bricks along each axis.
+pub fn brick_resolution(resolution: [u32; 3]) -> [u32; 3] {
+    resolution.map(|cells| cells.div_ceil(BRICK_SIZE))
+}
+
 /// Index of a cell.
 pub fn cell_id(cell: [u32; 3], resolution: [u32; 3]) -> u32 {
     cell[0] + resolution[0] * (cell[1] + resolution[1] * cell[2])

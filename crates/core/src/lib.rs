@@ -4,13 +4,16 @@
 pub mod dispatch;
 pub mod gather;
 pub mod grid;
+pub mod intersect;
 pub mod kernel;
 pub mod layout;
 pub mod overlap;
 pub mod ray;
 pub mod shape;
 pub mod sort;
+pub mod twin;
 pub mod vector;
+pub mod walk;
 
 pub use layout::Report;
 pub use ray::{Hit, MISS, Ray, UNFINISHED};

@@ -1,0 +1,9 @@
+//! Twin of kernel `bounds_spine`.
+
+use super::bounds_reduce::unite;
+use crate::layout::Bounds;
+
+/// The union of the boxes of all tiles: the scene box.
+pub fn bounds_spine(partials: &[Bounds], scene: &mut Bounds, partial_count: u32) {
+    *scene = partials[..partial_count as usize].iter().copied().fold(Bounds::EMPTY, unite);
+}

@@ -1,0 +1,173 @@
+//! Twin of kernel `configure`.
+//!
+//! Integers that follow from the resolution are the kernel's on every device; the resolution and the sizes of cells come out of divisions,
+//! which a GPU rounds by up to 2.5 ulp. So later twins take the device's header, and [`configure_state`] is a function of it.
+
+use super::clear_cells::CELLS_EACH;
+use super::pair_args::four;
+use crate::dispatch::split_workgroups;
+use crate::grid::brick_resolution;
+use crate::layout::{Bounds, BuildState, DispatchArguments, GridHeader, OVERFLOW_CELLS, Report};
+use crate::shape::Shape;
+use crate::vector::{Vec3, add, clamped_exponent, largest, max, max_f32, min, power_of_two, sub};
+
+const MAX_RESOLUTION: f32 = 4096.0;
+/// 2^-20.
+pub const PAD: f32 = 9.536_743e-7;
+const MIN_CELL_IN_PADS: f32 = 4.0;
+
+/// What a build asks `configure` for.
+#[derive(Clone, Copy, Debug)]
+pub struct Configure {
+    /// Triangles, dropped ones included.
+    pub triangle_count: u32,
+    /// Most cells.
+    pub cell_capacity: u32,
+    /// Density k of Equation 3-1.
+    pub density: f32,
+    /// A fixed resolution; the first is 0 without.
+    pub fixed: [u32; 3],
+    /// Whether cells that only a triangle's box overlaps get the sentinel key.
+    pub exact: bool,
+}
+
+fn cells_for(relative: Vec3, limit: Vec3, s: f32) -> f32 {
+    let cells = min(max(relative.map(|x| x * s), [1.0; 3]), limit);
+    cells[0] * cells[1] * cells[2]
+}
+
+fn resolution_for(extent: Vec3, limit: Vec3, target: f32) -> [u32; 3] {
+    let longest = largest(extent);
+    let relative = extent.map(|x| x / longest);
+    let mut low = 1.0;
+    let mut high = max_f32(target, 1.0);
+    for _ in 0..48 {
+        let middle = 0.5 * (low + high);
+        if cells_for(relative, limit, middle) <= target {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    min(max(relative.map(|x| (x * low).floor()), [1.0; 3]), limit).map(|x| x as u32)
+}
+
+fn cell_size_for(low: f32, high: f32, count: f32) -> f32 {
+    let mut size = (high - low) / count;
+    for _ in 0..64 {
+        let offset = count * size;
+        if low + offset >= high {
+            break;
+        }
+        size = f32::from_bits(size.to_bits() + 1);
+    }
+    size
+}
+
+/// The scene box in the grid's frame, padded, with the scale that brings it there.
+fn padded_box(info: &Configure, scene: &Bounds) -> (Bounds, i32, f32) {
+    let empty = scene.dropped == info.triangle_count;
+    let (low, high) = if empty { ([0.0; 3], [0.0; 3]) } else { (scene.low, scene.high) };
+    let magnitude = largest(max(low.map(f32::abs), high.map(f32::abs)));
+    let exponent = if magnitude > 0.0 { clamped_exponent(magnitude) } else { 0 };
+    let scale = power_of_two(-exponent);
+    let pad = max_f32(magnitude * scale, 1.0) * PAD;
+    let low = sub(low.map(|x| x * scale), [pad; 3]);
+    let high = add(high.map(|x| x * scale), [pad; 3]);
+    (Bounds { low, high, ..*scene }, exponent, pad)
+}
+
+/// The grid's head but for its addresses, the density that was used, and whether the cells did not fit.
+pub fn configure_header(info: &Configure, scene: &Bounds, addresses: [[u32; 2]; 4]) -> (GridHeader, f32, u32) {
+    let (padded, exponent, pad) = padded_box(info, scene);
+    let extent = sub(padded.high, padded.low);
+    let limit = extent.map(|x| max_f32((x / (MIN_CELL_IN_PADS * pad)).floor(), 1.0).min(MAX_RESOLUTION));
+    let mut density = info.density;
+    let mut resolution = [1; 3];
+    let mut overflow = 0;
+    if scene.dropped != info.triangle_count {
+        let triangles = (info.triangle_count - scene.dropped) as f32;
+        let capacity = (info.cell_capacity as f32 * 0.999_999).floor();
+        if info.fixed[0] != 0 {
+            resolution = std::array::from_fn(|axis| info.fixed[axis].min(limit[axis] as u32));
+            let [x, y, z] = resolution.map(|n| n as f32);
+            if x * y * z > capacity {
+                overflow = OVERFLOW_CELLS;
+                resolution = resolution_for(extent, limit, max_f32(capacity, 1.0));
+            }
+        } else {
+            let mut wanted = max_f32(triangles * info.density, 1.0);
+            if wanted > capacity {
+                overflow = OVERFLOW_CELLS;
+                wanted = max_f32(capacity, 1.0);
+                density = wanted / triangles;
+            }
+            resolution = resolution_for(extent, limit, wanted);
+        }
+    }
+    let cell_size: Vec3 = std::array::from_fn(|axis| cell_size_for(padded.low[axis], padded.high[axis], resolution[axis] as f32));
+    let [cells, references, triangles, bricks] = addresses;
+    let header = GridHeader {
+        box_min: padded.low,
+        scale: power_of_two(-exponent),
+        box_max: padded.high,
+        pad,
+        cell_size,
+        inverse_scale: power_of_two(exponent),
+        inverse_cell_size: cell_size.map(|size| 1.0 / size),
+        cell_count: resolution.iter().product(),
+        resolution,
+        triangle_count: info.triangle_count,
+        cells,
+        references,
+        triangles,
+        bricks,
+    };
+    (header, density, overflow)
+}
+
+/// State, arguments and report as they follow from the header; of the arguments and the report only what the kernel writes.
+#[allow(clippy::too_many_arguments, reason = "what the kernel writes")]
+pub fn configure_state(
+    shape: &Shape,
+    info: &Configure,
+    scene: &Bounds,
+    header: &GridHeader,
+    density: f32,
+    overflow: u32,
+    state: &mut BuildState,
+    arguments: &mut DispatchArguments,
+    report: &mut Report,
+) {
+    let largest_key = if info.exact { header.cell_count } else { header.cell_count - 1 };
+    let key_bits = 32 - largest_key.leading_zeros();
+    *state = BuildState {
+        triangle_count: info.triangle_count,
+        offset_count: info.triangle_count + 1,
+        key_bits,
+        pass_count: key_bits.div_ceil(shape.sort_bits),
+        overflow,
+        ..BuildState::default()
+    };
+    arguments.clear_cells = four(split_workgroups(header.cell_count.div_ceil(CELLS_EACH), shape.map_size));
+    let bricks = brick_resolution(header.resolution).iter().product();
+    arguments.brick_reduce = four(split_workgroups(bricks, shape.brick_tile()));
+    arguments.brick_distance = four(split_workgroups(bricks, shape.map_size));
+    let empty = scene.dropped == info.triangle_count;
+    *report = Report {
+        triangles: info.triangle_count,
+        dropped: scene.dropped,
+        cells: header.cell_count,
+        cells_in_use: 0,
+        resolution: header.resolution,
+        longest_list: 0,
+        pairs: 0,
+        pair_total: 0,
+        overflow,
+        key_bits,
+        box_min: if empty { [0.0; 3] } else { scene.low },
+        density,
+        box_max: if empty { [0.0; 3] } else { scene.high },
+        reserved: 0,
+    };
+}

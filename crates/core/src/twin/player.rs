@@ -1,0 +1,203 @@
+//! Plays the steps of a rebuild on the CPU, so that each can be compared with what the device did.
+
+use bytemuck::{Pod, Zeroable, bytes_of};
+
+use super::bounds_reduce::bounds_reduce;
+use super::bounds_spine::bounds_spine;
+use super::brick_distance_x::brick_distance_x;
+use super::brick_distance_y::brick_distance_y;
+use super::brick_distance_z::brick_distance_z;
+use super::brick_reduce::brick_reduce;
+use super::cell_ranges::cell_ranges;
+use super::clear_cells::{CELLS_EACH, clear_cells};
+use super::configure::{Configure, configure_header, configure_state};
+use super::overlap_count::overlap_count;
+use super::overlap_emit::overlap_emit;
+use super::pair_args::pair_args;
+use super::report_spine::report_spine;
+use super::scan_downsweep::scan_downsweep;
+use super::scan_reduce::scan_reduce;
+use super::scan_spine::scan_spine;
+use super::sort_histogram::sort_histogram;
+use super::sort_scatter::{Pairs, sort_scatter};
+use crate::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, Report};
+use crate::shape::Shape;
+use crate::sort::writes_a;
+
+/// The number of workgroups of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Groups {
+    /// Given.
+    Direct([u32; 3]),
+    /// At a byte offset into the arguments.
+    Indirect(u64),
+}
+
+/// A step of a plan, as the twins see it.
+#[derive(Clone, Copy, Debug)]
+pub struct PlayedStep<'a> {
+    /// Name of the kernel.
+    pub kernel: &'a str,
+    /// How many workgroups.
+    pub groups: Groups,
+    /// Push constants after the addresses.
+    pub words: &'a [u32],
+    /// Whether the step runs the kernel's exact variant.
+    pub exact: bool,
+}
+
+/// Memory of a rebuild, named as in the plan.
+#[derive(Clone, Debug)]
+#[allow(missing_docs, reason = "the names are those of the plan's buffers")]
+pub struct Memory {
+    pub positions: Vec<f32>,
+    pub indices: Vec<u32>,
+    pub header: GridHeader,
+    pub cells: Vec<[u32; 2]>,
+    pub references: Vec<u32>,
+    pub triangles: Vec<[f32; 4]>,
+    pub bricks: Vec<Brick>,
+    pub report: Report,
+    pub state: BuildState,
+    pub arguments: DispatchArguments,
+    pub scene_bounds: Bounds,
+    pub bounds_partials: Vec<Bounds>,
+    pub offsets: Vec<u32>,
+    pub scan_partials: Vec<u32>,
+    pub keys_a: Vec<u32>,
+    pub keys_b: Vec<u32>,
+    pub values_a: Vec<u32>,
+    pub table: Vec<u32>,
+    pub occupancy: Vec<[u32; 2]>,
+    pub distances_x: Vec<u32>,
+    pub distances_y: Vec<u32>,
+}
+
+fn filled<T: Pod>(word: u32) -> T {
+    let mut value = T::zeroed();
+    for bytes in bytemuck::bytes_of_mut(&mut value).chunks_mut(4) {
+        bytes.copy_from_slice(&bytes_of(&word)[..bytes.len()]);
+    }
+    value
+}
+
+impl Memory {
+    /// Memory for a geometry and for `triangles`, `cells`, `pairs` and `bricks` at most, of which every word is `word`.
+    pub fn filled(word: u32, shape: &Shape, positions: Vec<f32>, indices: Vec<u32>, [triangles, cells, pairs, bricks]: [u32; 4]) -> Memory {
+        let (cells, pairs) = (cells.max(1), pairs.max(1) as usize);
+        let table = shape.table_entries(pairs as u32) as usize;
+        let offsets = triangles as usize + 1;
+        Memory {
+            positions,
+            indices,
+            header: filled(word),
+            cells: vec![[word; 2]; cells.next_multiple_of(CELLS_EACH) as usize],
+            references: vec![word; pairs],
+            triangles: vec![filled(word); 3 * triangles.max(1) as usize],
+            bricks: vec![filled(word); bricks as usize],
+            report: filled(word),
+            state: filled(word),
+            arguments: filled(word),
+            scene_bounds: filled(word),
+            bounds_partials: vec![filled(word); shape.bounds_tiles(triangles) as usize],
+            offsets: vec![word; offsets],
+            scan_partials: vec![word; offsets.max(table).div_ceil(shape.scan_tile() as usize)],
+            keys_a: vec![word; pairs],
+            keys_b: vec![word; pairs],
+            values_a: vec![word; pairs],
+            table: vec![word; table],
+            occupancy: vec![[word; 2]; bricks.div_ceil(shape.brick_tile()) as usize],
+            distances_x: vec![word; bricks as usize],
+            distances_y: vec![word; bricks as usize],
+        }
+    }
+
+    /// Runs a step.
+    ///
+    /// # Errors
+    /// The name of a kernel that has no twin.
+    pub fn play<'a>(&mut self, shape: &Shape, step: &PlayedStep<'a>, addresses: [[u32; 2]; 4]) -> Result<(), &'a str> {
+        let groups = match step.groups {
+            Groups::Direct(groups) => groups,
+            Groups::Indirect(offset) => {
+                let mut groups = <[u32; 3]>::zeroed();
+                let words: &[u32] = bytemuck::cast_slice(bytes_of(&self.arguments));
+                groups.copy_from_slice(&words[offset as usize / 4..][..3]);
+                groups
+            }
+        };
+        if groups.contains(&0) {
+            return Ok(());
+        }
+        let words = step.words;
+        let GridHeader { cell_count, resolution, .. } = self.header;
+        let pair_count = self.state.pair_count;
+        match step.kernel {
+            "bounds_reduce" => {
+                bounds_reduce(shape, groups, &self.positions, &self.indices, &mut self.bounds_partials, words[0], words[1]);
+            }
+            "bounds_spine" => bounds_spine(&self.bounds_partials, &mut self.scene_bounds, words[0]),
+            "configure" => {
+                let info = Configure {
+                    triangle_count: words[0],
+                    cell_capacity: words[1],
+                    density: f32::from_bits(words[2]),
+                    fixed: [words[3], words[4], words[5]],
+                    exact: words[6] != 0,
+                };
+                let (header, density, overflow) = configure_header(&info, &self.scene_bounds, addresses);
+                self.header = header;
+                let (scene, state, arguments, report) = (&self.scene_bounds, &mut self.state, &mut self.arguments, &mut self.report);
+                configure_state(shape, &info, scene, &header, density, overflow, state, arguments, report);
+            }
+            "clear_cells" => clear_cells(shape, groups, cell_count, &mut self.cells),
+            "overlap_count" => {
+                let (triangles, counts) = (&mut self.triangles, &mut self.offsets);
+                overlap_count(shape, groups, &self.header, &self.positions, &self.indices, triangles, counts, words[0], words[1]);
+            }
+            "scan_reduce" | "scan_spine" | "scan_downsweep" => {
+                let (length, values) = match words[0] {
+                    0 => (self.state.offset_count, &mut self.offsets),
+                    _ => (self.state.table_count, &mut self.table),
+                };
+                let partials = &mut self.scan_partials;
+                match step.kernel {
+                    "scan_reduce" => scan_reduce(shape, groups, length, values, partials),
+                    "scan_spine" => scan_spine(shape, length, partials),
+                    _ => scan_downsweep(shape, groups, length, partials, values),
+                }
+            }
+            "pair_args" => {
+                let (state, arguments, report) = (&mut self.state, &mut self.arguments, &mut self.report);
+                pair_args(shape, state, &self.offsets, arguments, report, words[0], words[1]);
+            }
+            "overlap_emit" => {
+                let (keys, values) = match writes_a(self.state.pass_count, 0) {
+                    true => (&mut self.keys_a, &mut self.values_a),
+                    false => (&mut self.keys_b, &mut self.references),
+                };
+                let offsets = &self.offsets[..self.state.offset_count as usize];
+                overlap_emit(shape, groups, step.exact, &self.header, pair_count, offsets, &self.triangles, keys, values);
+            }
+            "sort_histogram" => {
+                let keys = if writes_a(self.state.pass_count, words[0]) { &self.keys_a } else { &self.keys_b };
+                sort_histogram(shape, groups, pair_count, keys, &mut self.table, words[0]);
+            }
+            "sort_scatter" => {
+                let a = (&mut self.keys_a, &mut self.values_a);
+                let b = (&mut self.keys_b, &mut self.references);
+                let (from, to) = if writes_a(self.state.pass_count, words[0]) { (a, b) } else { (b, a) };
+                let pairs = Pairs { keys: from.0.as_slice(), values: from.1.as_slice() };
+                sort_scatter(shape, groups, pair_count, &pairs, to.0, to.1, &self.table, words[0]);
+            }
+            "cell_ranges" => cell_ranges(shape, groups, cell_count, pair_count, &self.keys_b, &mut self.cells, &mut self.report),
+            "brick_reduce" => brick_reduce(shape, groups, resolution, &self.cells, &mut self.bricks, &mut self.occupancy),
+            "report_spine" => report_spine(shape, resolution, &self.occupancy, &mut self.report),
+            "brick_distance_x" => brick_distance_x(shape, groups, resolution, &self.bricks, &mut self.distances_x),
+            "brick_distance_y" => brick_distance_y(shape, groups, resolution, &self.distances_x, &mut self.distances_y),
+            "brick_distance_z" => brick_distance_z(shape, groups, resolution, &self.distances_y, &mut self.bricks),
+            unknown => return Err(unknown),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,13 @@
+//! Kernel `trace_args`: a number of rays as arguments of the first trace.
+
+use crate::dispatch::split_workgroups;
+use crate::layout::TraceState;
+
+/// `count` is the number in memory of an indirect trace; without it `max_rays` is the number itself.
+pub fn trace_args(state: &mut TraceState, count: Option<u32>, max_rays: u32, map_size: u32) {
+    let rays = count.map_or(max_rays, |count| max_rays.min(count));
+    let [x, y, z] = split_workgroups(rays, map_size);
+    state.arguments = [x, y, z, 0];
+    state.ray_count = rays;
+    state.unfinished = 0;
+}

@@ -1,0 +1,250 @@
+//! The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), as `shared/walk.glsl` and
+//! `shared/trace.glsl` have it.
+
+use crate::grid::{boundary, cell_of};
+use crate::intersect::{Intersection, MovedRay, intersect_triangle};
+use crate::layout::{GridHeader, WalkState};
+use crate::ray::MISS;
+use crate::vector::{Vec3, add, max, max_f32, min, min_f32, mul, sub};
+
+/// Turns of a walk in one dispatch, after which it is given up.
+pub const TURNS: u32 = 4096;
+/// Triangles tested in a turn.
+pub const TESTS_EACH_TURN: u32 = 7;
+/// Turns of a walk through the public include.
+pub const GRIDWALK_TURNS: u32 = 32_768;
+/// Added to the distance of a boundary that the ray does not move towards.
+pub const BEYOND: f32 = 3.0e38;
+
+/// A grid's memory, as a kernel reaches it through the addresses in the header.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid<'a> {
+    /// Head of the grid.
+    pub header: &'a GridHeader,
+    /// Begin and end of each cell's list.
+    pub cells: &'a [[u32; 2]],
+    /// The lists of all cells.
+    pub references: &'a [u32],
+    /// Three vertices a triangle, in the grid's frame.
+    pub triangles: &'a [[[f32; 4]; 3]],
+}
+
+impl Grid<'_> {
+    /// The vertices of a triangle, in the grid's frame.
+    pub fn triangle(&self, index: u32) -> [Vec3; 3] {
+        self.triangles[index as usize].map(|[x, y, z, _]| [x, y, z])
+    }
+}
+
+/// Sees each step of a walk. Its default does nothing.
+pub trait Observer {
+    /// The walk is in a cell, having entered it at `entry`; it leaves at `walk.exit`.
+    fn cell(&mut self, _walk: &Walk, _grid: &Grid, _entry: f32) {}
+
+    /// A triangle of the cell's list is tested.
+    fn test(&mut self, _walk: &Walk, _grid: &Grid, _triangle: u32) {}
+
+    /// A hit was accepted as the best so far.
+    fn hit(&mut self, _walk: &Walk, _grid: &Grid, _triangle: u32, _hit: Intersection) {}
+}
+
+impl Observer for () {}
+
+/// Numbers of a walk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Cells visited.
+    pub steps: u32,
+    /// Triangles tested.
+    pub tests: u32,
+    /// Cells visited that are not empty.
+    pub cells: u32,
+}
+
+/// A ray on its way through a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walk {
+    /// The ray in the grid's frame.
+    pub ray: MovedRay,
+    /// Of the direction; 0 where that is 0.
+    pub inverse: Vec3,
+    /// Added to the distances: beyond any where the direction is 0.
+    pub never: Vec3,
+    /// 1 where the boundary ahead is the cell's upper one.
+    pub ahead: Vec3,
+    /// Cell ids along each axis, with the sign of the direction.
+    pub stride: [i32; 3],
+    /// Where the walk is.
+    pub cell: [i32; 3],
+    /// Index of that cell.
+    pub id: i32,
+    /// s of the boundary ahead along each axis.
+    pub boundaries: Vec3,
+    /// s at which the cell is left.
+    pub exit: f32,
+    /// Next in the cell's list.
+    pub reference: u32,
+    /// End of the cell's list.
+    pub list_end: u32,
+    /// s of the best hit, or of the end of the ray's interval.
+    pub best_s: f32,
+    /// Of the best hit.
+    pub best_u: f32,
+    /// Of the best hit.
+    pub best_v: f32,
+    /// Of the best hit; [`MISS`]: none so far.
+    pub best_triangle: u32,
+}
+
+fn walk_measure(walk: &mut Walk, header: &GridHeader) {
+    let edges = boundary(header.box_min, header.cell_size, add(walk.cell.map(|i| i as f32), walk.ahead));
+    walk.boundaries = add(mul(sub(edges, walk.ray.origin), walk.inverse), walk.never);
+    let nearest = min_f32(walk.boundaries[0], min_f32(walk.boundaries[1], walk.boundaries[2]));
+    walk.exit = max_f32(walk.exit, nearest);
+}
+
+fn walk_enter(walk: &mut Walk, grid: &Grid) {
+    walk_measure(walk, grid.header);
+    [walk.reference, walk.list_end] = grid.cells[walk.id as usize];
+}
+
+/// A walk that has no cell: for tests of triangles alone.
+pub fn walk_nowhere(ray: MovedRay) -> Walk {
+    Walk {
+        ray,
+        inverse: [0.0; 3],
+        never: [0.0; 3],
+        ahead: [0.0; 3],
+        stride: [0; 3],
+        cell: [0; 3],
+        id: 0,
+        boundaries: [0.0; 3],
+        exit: 0.0,
+        reference: 0,
+        list_end: 0,
+        best_s: ray.s_max,
+        best_u: 0.0,
+        best_v: 0.0,
+        best_triangle: MISS,
+    }
+}
+
+/// At the ray's first cell. Only for a grid of at least one cell.
+pub fn walk_begin(grid: &Grid, ray: MovedRay) -> Walk {
+    let header = grid.header;
+    let still = ray.direction.map(|x| x == 0.0);
+    let up = ray.direction.map(|x| x > 0.0);
+    let extent = header.resolution.map(|n| n as i32);
+    let strides = [1, extent[0], extent[0] * extent[1]];
+    let last = sub(header.resolution.map(|n| n as f32), [1.0; 3]);
+    let first = min(max(mul(sub(ray.origin, header.box_min), header.inverse_cell_size).map(f32::floor), [0.0; 3]), last);
+    let cell = first.map(|x| x as i32);
+    let mut walk = Walk {
+        inverse: std::array::from_fn(|axis| if still[axis] { 0.0 } else { 1.0 / ray.direction[axis] }),
+        never: still.map(|still| if still { BEYOND } else { 0.0 }),
+        ahead: up.map(|up| if up { 1.0 } else { 0.0 }),
+        stride: std::array::from_fn(|axis| if up[axis] { strides[axis] } else { -strides[axis] }),
+        cell,
+        id: cell[0] + cell[1] * strides[1] + cell[2] * strides[2],
+        ..walk_nowhere(ray)
+    };
+    walk_enter(&mut walk, grid);
+    walk
+}
+
+/// Into the next cell; false outside of the grid.
+pub fn walk_step(walk: &mut Walk, grid: &Grid) -> bool {
+    let [x, y, z] = walk.boundaries;
+    let axis = if x <= y && x <= z {
+        0
+    } else if y <= z {
+        1
+    } else {
+        2
+    };
+    walk.cell[axis] += if walk.stride[axis] > 0 { 1 } else { -1 };
+    walk.id += walk.stride[axis];
+    if walk.cell[axis] as u32 >= grid.header.resolution[axis] {
+        return false;
+    }
+    walk_enter(walk, grid);
+    true
+}
+
+/// Whether no cell ahead can hold a hit that is closer than the best, or as close.
+pub fn walk_is_over(walk: &Walk) -> bool {
+    walk.best_s <= walk.exit
+}
+
+/// Whether a hit is in the ray's interval and closer than the best; of equal ones the lower index wins.
+pub fn walk_improves(walk: &Walk, s: f32, triangle: u32) -> bool {
+    s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle))
+}
+
+/// The hit of a triangle, if it improves on the best.
+pub fn walk_test(walk: &Walk, grid: &Grid, triangle: u32) -> Option<Intersection> {
+    let hit = intersect_triangle(&walk.ray, grid.triangle(triangle))?;
+    walk_improves(walk, hit.s, triangle).then_some(hit)
+}
+
+/// Makes a hit the best.
+pub fn walk_commit(walk: &mut Walk, hit: Intersection, triangle: u32) {
+    walk.best_s = hit.s;
+    walk.best_u = hit.u;
+    walk.best_v = hit.v;
+    walk.best_triangle = triangle;
+}
+
+/// What the next dispatch needs to go on.
+pub fn walk_save(walk: &Walk) -> WalkState {
+    WalkState {
+        given_up: 1,
+        cell: walk.id as u32,
+        reference: walk.reference,
+        exit: walk.exit,
+        best_s: walk.best_s,
+        best_u: walk.best_u,
+        best_v: walk.best_v,
+        best_triangle: walk.best_triangle,
+    }
+}
+
+/// Goes on where a walk was given up.
+pub fn walk_restore(walk: &mut Walk, grid: &Grid, saved: &WalkState) {
+    walk.cell = cell_of(saved.cell, grid.header.resolution).map(|i| i as i32);
+    walk.id = saved.cell as i32;
+    walk.exit = saved.exit;
+    walk_enter(walk, grid);
+    walk.reference = saved.reference;
+    walk_commit(walk, Intersection { s: saved.best_s, u: saved.best_u, v: saved.best_v }, saved.best_triangle);
+}
+
+/// Walks until the end or for [`TURNS`] turns; true at the end. With `any`, the first hit is the end.
+pub fn walk_run(walk: &mut Walk, grid: &Grid, any: bool, counters: &mut Counters, observer: &mut impl Observer) -> bool {
+    for _ in 0..TURNS {
+        let stop = walk.list_end.min(walk.reference + TESTS_EACH_TURN);
+        while walk.reference < stop {
+            let triangle = grid.references[walk.reference as usize];
+            counters.tests += 1;
+            walk.reference += 1;
+            observer.test(walk, grid, triangle);
+            if let Some(hit) = walk_test(walk, grid, triangle) {
+                observer.hit(walk, grid, triangle, hit);
+                walk_commit(walk, hit, triangle);
+                if any {
+                    return true;
+                }
+            }
+        }
+        if walk.reference >= walk.list_end {
+            let entry = walk.exit;
+            if walk_is_over(walk) || !walk_step(walk, grid) {
+                return true;
+            }
+            counters.steps += 1;
+            counters.cells += u32::from(walk.reference < walk.list_end);
+            observer.cell(walk, grid, entry);
+        }
+    }
+    false
+}
