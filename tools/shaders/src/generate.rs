@@ -93,11 +93,11 @@ fn compile(root: &Path, compiler: &Compiler, kernel: &KernelSource) -> Result<Re
     let text = source::read(root, &kernel.path)?;
     let artifact =
         compiler.compile_into_spirv(&text, ShaderKind::Compute, &kernel.path, "main", Some(&options)).map_err(|error| match error {
-            shaderc::Error::CompilationError(_, messages) => anyhow!("{}", messages.trim_end()),
+            shaderc::Error::CompilationError(_, messages) => anyhow!("{}:\n{}", kernel.path, messages.trim_end()),
             other => anyhow!("{}: {other}", kernel.path),
         })?;
     if artifact.get_num_warnings() > 0 {
-        bail!("{}", artifact.get_warning_messages().trim_end());
+        bail!("{}: warnings count as errors:\n{}", kernel.path, artifact.get_warning_messages().trim_end());
     }
     spirv::finish(artifact.as_binary()).with_context(|| kernel.path.clone())
 }
