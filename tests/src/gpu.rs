@@ -3,8 +3,11 @@
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use gridwalk::ash::vk;
+use gridwalk::kernel::Kernel;
+use gridwalk::plan::Item;
 use gridwalk::{
-    BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, Hit, Ray, RayCount, Region, Report, TraceInfo, Tracer, cmd_barrier,
+    BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, Hit, Ray, RayCount, Region, Report, Shape, Timestamps, TraceInfo, Tracer,
+    cmd_barrier,
 };
 use gridwalk_core::layout::GridHeader;
 use gridwalk_render::{Buffer, BufferDesc, BufferKind, Context, ContextDesc};
@@ -136,10 +139,26 @@ impl Gpu {
         GPU.get_or_init(|| Gpu::new(None))
     }
 
+    /// The shared device, with kernels cut as asked.
+    pub fn with_shape(shape: Shape) -> &'static Gpu {
+        static GPUS: Mutex<Vec<(Shape, &'static Gpu)>> = Mutex::new(Vec::new());
+        let mut gpus = GPUS.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, gpu)) = gpus.iter().find(|(known, _)| *known == shape) {
+            return gpu;
+        }
+        let gpu: &'static Gpu = Box::leak(Box::new(Gpu::on(Gpu::shared().context.clone(), Some(shape))));
+        gpus.push((shape, gpu));
+        gpu
+    }
+
     /// A device of its own, with kernels cut as asked.
-    pub fn new(shape: Option<gridwalk::Shape>) -> Gpu {
+    pub fn new(shape: Option<Shape>) -> Gpu {
         let validation = std::env::var("GRIDWALK_VALIDATE").map_or(true, |value| value != "0");
         let context = Context::new(&ContextDesc { validation, name: "tests", ..ContextDesc::default() }).unwrap();
+        Gpu::on(context, shape)
+    }
+
+    fn on(context: Context, shape: Option<Shape>) -> Gpu {
         let desc = DeviceDesc {
             instance: context.instance(),
             physical_device: context.physical_device(),
@@ -182,6 +201,95 @@ impl Gpu {
             Ok(())
         });
         submitted.unwrap();
+    }
+
+    /// Runs one kernel: the addresses of its memory in order of its accesses, then `words`. Checks the guards.
+    pub fn launch(&self, kernel: &'static Kernel, variant: u32, memory: &[&Guarded], words: &[u32], groups: [u32; 3]) {
+        assert_eq!(memory.len(), kernel.accesses.len(), "{}", kernel.name);
+        let mut push: Vec<u8> = memory.iter().flat_map(|memory| memory.region().address.to_ne_bytes()).collect();
+        push.extend(words.iter().flat_map(|word| word.to_ne_bytes()));
+        assert!(push.len() as u32 <= kernel.push_constant_size.next_multiple_of(8), "{}", kernel.name);
+        push.resize(kernel.push_constant_size as usize, 0);
+        self.submit(|cmd| {
+            // SAFETY: the caller gives memory as large as the kernel needs for these words; it outlives the submission.
+            unsafe { self.tracer.cmd_kernel(cmd, kernel, variant, &push, groups) };
+        });
+        for memory in memory {
+            memory.check();
+        }
+        self.check_validation();
+    }
+
+    /// Runs one item of a build's plan on the memory as earlier ones left it.
+    pub fn run_item(&self, built: &Built, item: &Item) {
+        self.submit(|cmd| {
+            // SAFETY: all memory of the build lives in `built`, and the submission is waited for.
+            unsafe { self.tracer.cmd_build_items(cmd, &built.info, std::slice::from_ref(item)) };
+        });
+        built.check_guards();
+        self.check_validation();
+    }
+
+    /// Records a build once and submits it several times, with `between` before each but the first.
+    pub fn submit_again(&self, built: &mut Built, times: usize, mut between: impl FnMut(&mut Built, usize)) {
+        let device = self.context.device();
+        // SAFETY: instance and physical device are of each other; the pool, its buffer and all memory outlive the submissions, which are
+        // waited for; the family is the one that the context's queue is of.
+        let (pool, secondary) = unsafe {
+            let families = self.context.instance().get_physical_device_queue_family_properties(self.context.physical_device());
+            let computes = |family: &vk::QueueFamilyProperties| family.queue_flags.contains(vk::QueueFlags::COMPUTE);
+            let family = families.iter().position(|family| computes(family) && family.timestamp_valid_bits > 0);
+            let family = family.or_else(|| families.iter().position(computes)).unwrap() as u32;
+            let pool = device.create_command_pool(&vk::CommandPoolCreateInfo::default().queue_family_index(family), None).unwrap();
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(pool)
+                .level(vk::CommandBufferLevel::SECONDARY)
+                .command_buffer_count(1);
+            let cmd = device.allocate_command_buffers(&info).unwrap()[0];
+            let inheritance = vk::CommandBufferInheritanceInfo::default();
+            device.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default().inheritance_info(&inheritance)).unwrap();
+            self.tracer.cmd_build(cmd, &built.info).unwrap();
+            device.end_command_buffer(cmd).unwrap();
+            (pool, cmd)
+        };
+        for time in 0..times {
+            if time > 0 {
+                between(built, time);
+            }
+            self.submit(|cmd| {
+                // SAFETY: as above.
+                unsafe { device.cmd_execute_commands(cmd, &[secondary]) };
+            });
+            built.report = built.report_memory.read(0, 1)[0];
+            built.check_guards();
+        }
+        // SAFETY: the submissions have ended.
+        unsafe { device.destroy_command_pool(pool, None) };
+        self.check_validation();
+    }
+
+    /// Builds again with timestamps, which are returned; `None` where the device has none.
+    pub fn timestamps(&self, built: &mut Built) -> Option<Vec<u64>> {
+        if !self.context.has_timestamps() {
+            return None;
+        }
+        const FIRST: u32 = 3;
+        let count = self.tracer.build_sizes(&built.info.capacity).unwrap().timestamp_count;
+        let device = self.context.device();
+        let info = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(FIRST + count);
+        // SAFETY: the device lives.
+        let pool = unsafe { device.create_query_pool(&info, None) }.unwrap();
+        built.info.timestamps = Some(Timestamps { pool, first_query: FIRST });
+        self.rebuild(built);
+        built.info.timestamps = None;
+        let mut stamps = vec![0u64; count as usize];
+        let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
+        // SAFETY: the build reset and wrote these queries, and has ended.
+        unsafe {
+            device.get_query_pool_results(pool, FIRST, &mut stamps, flags).unwrap();
+            device.destroy_query_pool(pool, None);
+        }
+        Some(stamps)
     }
 
     /// Memory for a build of a mesh, which is not built yet.

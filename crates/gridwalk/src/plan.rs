@@ -126,6 +126,12 @@ impl Step {
         Buffer::ALL[u64::from_ne_bytes(token) as usize]
     }
 
+    /// The push constants after the addresses.
+    pub fn words(&self) -> Vec<u32> {
+        let bytes = &self.push[8 * self.kernel.accesses.len()..self.kernel.push_constant_size as usize];
+        bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect()
+    }
+
     /// The push constants with every buffer replaced by its address.
     pub(crate) fn resolve(&self, address: impl Fn(Buffer) -> u64) -> [u8; MAX_PUSH] {
         let mut push = self.push;
