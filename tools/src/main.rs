@@ -108,15 +108,7 @@ fn run(tool: Tool) -> Result<ExitCode> {
         Tool::Bench { options } => {
             let mut command = Command::new("cargo");
             command.current_dir(std::env::current_dir()?).args(["run", "--quiet", "--release", "--manifest-path"]);
-            command.arg(root.join("Cargo.toml")).args([
-                "--package",
-                "gridwalk-tools",
-                "--features",
-                "bench",
-                "--bin",
-                "gridwalk-bench",
-                "--",
-            ]);
+            command.arg(root.join("Cargo.toml")).args(["--package", "gridwalk-bench", "--"]);
             return process::pass(command.args(options));
         }
     }

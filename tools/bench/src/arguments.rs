@@ -1,0 +1,113 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+
+/// Measures rebuilds and rays of gridwalk, with Embree as rival on the same triangles and rays where it is installed.
+///
+/// Our times are device times, Embree's are wall times; both are medians over the runs, taken in turns after a warm-up. Ratios above 1 mean
+/// faster than Embree; on a CPU driver there is a ratio of processor times too, which other work on the machine disturbs least. On lavapipe both
+/// use the same number of threads. Standard output carries the table, or JSON with `--json -`.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "gridwalk-bench", bin_name = "cargo tool bench", version)]
+pub struct Arguments {
+    /// Scenes: files (.obj, .toml), names (bunny, dragon, sponza, elephant) looked up in the folders of GRIDWALK_SCENES and in the cache of
+    /// `cargo tool scenes`, or made ones by number of triangles (sphere:N, bumpy:N, terrain:N, soup:N, stadium:N) [default: bumpy:70000]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+
+    /// Also look for scenes by name in this folder
+    #[arg(long, value_name = "DIR")]
+    pub folder: Vec<PathBuf>,
+
+    /// Runs after the warm-up
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub runs: u32,
+
+    /// Density k: cells a triangle [default: the library's]
+    #[arg(long)]
+    pub density: Option<f32>,
+
+    /// Which cells list a triangle [default: the library's]
+    #[arg(long)]
+    pub overlap: Option<Overlap>,
+
+    /// Width and height of the camera's picture, a multiple of 8; as many other rays
+    #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(8..=8192))]
+    pub size: u32,
+
+    /// Seed of the diffuse rays and of the scenes that are made
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+
+    /// Measure these alone: camera and diffuse are closest hits, any is any hit on the diffuse rays [default: all]
+    #[arg(long, value_delimiter = ',', value_name = "WHAT")]
+    pub only: Vec<Part>,
+
+    /// Threads of Embree, and of lavapipe by LP_NUM_THREADS [default: LP_NUM_THREADS, or the machine's]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+
+    /// Do not look for Embree
+    #[arg(long)]
+    pub no_embree: bool,
+
+    /// Embree's library, instead of the usual names
+    #[arg(long, value_name = "FILE")]
+    pub embree: Option<PathBuf>,
+
+    /// Quality of the tree that Embree's rays are traced through
+    #[arg(long, default_value = "medium")]
+    pub embree_quality: Quality,
+
+    /// Device: cpu, best, an index, a UUID or a part of the name
+    #[arg(long, default_value = "best", env = "GRIDWALK_DEVICE")]
+    pub device: String,
+
+    /// Of the rebuild's steps, show only those whose name holds this (all are measured)
+    #[arg(long, value_name = "TEXT")]
+    pub filter_steps: Option<String>,
+
+    /// Write all figures as JSON; `-` is standard output, and the table then goes to standard error
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// Rebuilds.
+    Rebuild,
+    /// Closest hits of camera rays.
+    Camera,
+    /// Closest hits of diffuse rays.
+    Diffuse,
+    /// Any hits of diffuse rays.
+    Any,
+}
+
+/// The overlap test of the build.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Overlap {
+    /// By bounding box.
+    Box,
+    /// By the triangle itself.
+    Exact,
+}
+
+/// `RTCBuildQuality` of a tree to trace through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quality {
+    /// Surface area heuristic.
+    Medium,
+    /// With spatial splits.
+    High,
+}
+
+impl Arguments {
+    /// Whether a part is to be measured.
+    pub fn measures(&self, part: Part) -> bool {
+        self.only.is_empty() || self.only.contains(&part)
+    }
+}

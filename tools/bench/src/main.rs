@@ -1,0 +1,153 @@
+//! `cargo tool bench`: rebuilds and rays of gridwalk, measured on the device, with Embree as rival where it is installed.
+#![deny(unsafe_code)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics"))]
+
+mod arguments;
+#[allow(unsafe_code, reason = "calls a C library")]
+mod embree;
+mod measure;
+mod rays;
+mod report;
+mod scenes;
+
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+use anyhow::{Context as _, Result};
+use clap::Parser;
+use gridwalk_render::{Context, ContextDesc, GridBuilder};
+
+use crate::arguments::Arguments;
+use crate::embree::Embree;
+use crate::report::{Report, Rival};
+
+/// What lavapipe counts its threads by.
+const LAVAPIPE_THREADS: &str = "LP_NUM_THREADS";
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match start(&arguments) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("gridwalk-bench: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn start(arguments: &Arguments) -> Result<ExitCode> {
+    // The driver reads its environment when it is loaded, and setting a variable of one's own process is unsafe: so start again with it.
+    if let Some(threads) = arguments.threads.filter(|threads| std::env::var(LAVAPIPE_THREADS) != Ok(threads.to_string())) {
+        let mut command = Command::new(std::env::current_exe().context("where is this program?")?);
+        let status = command.args(std::env::args_os().skip(1)).env(LAVAPIPE_THREADS, threads.to_string()).status();
+        let code = status.context("cannot be started again")?.code().and_then(|code| u8::try_from(code).ok());
+        return Ok(code.map_or(ExitCode::FAILURE, ExitCode::from));
+    }
+    let report = run(arguments)?;
+    let table = report.table(arguments.filter_steps.as_deref());
+    let json = || serde_json::to_string_pretty(&report).context("JSON");
+    match &arguments.json {
+        Some(path) if path.as_os_str() == "-" => {
+            eprint!("{table}");
+            println!("{}", json()?);
+        }
+        Some(path) => {
+            std::fs::write(path, json()? + "\n").with_context(|| format!("{}: cannot be written", path.display()))?;
+            print!("{table}");
+        }
+        None => print!("{table}"),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn threads(arguments: &Arguments) -> u32 {
+    let set = || std::env::var(LAVAPIPE_THREADS).ok()?.parse().ok();
+    let machine = || std::thread::available_parallelism().map_or(1, |count| u32::try_from(count.get()).unwrap_or(1));
+    arguments.threads.or_else(set).unwrap_or_else(machine).max(1)
+}
+
+fn run(arguments: &Arguments) -> Result<Report> {
+    let embree = if arguments.no_embree { None } else { Embree::load(arguments.embree.as_deref(), threads(arguments))? };
+    if embree.is_none() && !arguments.no_embree {
+        eprintln!("gridwalk-bench: Embree is not installed (Debian: apt-get install libembree3-3 or libembree4-4): measuring without it");
+    }
+    let Ok(device) = arguments.device.parse();
+    let context = Context::new(&ContextDesc { device, name: "gridwalk-bench", ..ContextDesc::default() })?;
+    let begin = Instant::now();
+    let builder = GridBuilder::new(&context)?;
+    let pipelines_ms = begin.elapsed().as_secs_f64() * 1e3;
+    let info = context.device_info();
+    let mut report = Report {
+        schema: 1,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        device: info.name.clone(),
+        driver: format!("{} {}", info.driver_name, info.driver_info),
+        device_is_cpu: context.is_cpu(),
+        pipelines_ms,
+        embree: embree.as_ref().map(|embree| Rival {
+            version: embree.version(),
+            library: embree.path().display().to_string(),
+            threads: embree.threads(),
+            trace_quality: format!("{:?}", arguments.embree_quality).to_lowercase(),
+        }),
+        runs: arguments.runs,
+        scenes: Vec::new(),
+    };
+    let folders = scenes::folders(&arguments.folder);
+    let default = ["bumpy:70000".to_owned()];
+    let specs = if arguments.scenes.is_empty() { &default } else { arguments.scenes.as_slice() };
+    for spec in specs {
+        eprintln!("gridwalk-bench: {spec}");
+        let loaded = scenes::load(spec, &folders, arguments.seed)?;
+        report.scenes.push(measure::measure(&builder, embree.as_ref(), arguments, &loaded).with_context(|| spec.clone())?);
+    }
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arguments(words: &[&str]) -> Arguments {
+        Arguments::try_parse_from(["gridwalk-bench", "--size", "64", "--runs", "2"].iter().chain(words)).unwrap()
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn a_small_run_makes_a_table_and_json() {
+        for (words, has_rival) in
+            [(&["bumpy:500", "soup:300", "--overlap", "exact"][..], None), (&["sphere:200", "--no-embree"], Some(false))]
+        {
+            let report = run(&arguments(words)).unwrap();
+            let has_rival = has_rival.unwrap_or(report.embree.is_some());
+            assert_eq!(report.embree.is_some(), has_rival);
+            let table = report.table(None);
+            assert!(table.contains("rebuild") && table.contains("sort_scatter"), "{table}");
+            assert!(!report.table(Some("sort_")).contains("overlap_count"));
+            let again: Report = serde_json::from_str(&serde_json::to_string(&report).unwrap()).unwrap();
+            for scene in &again.scenes {
+                assert!(scene.pairs > 0 && !scene.steps.is_empty());
+                let kinds: Vec<&str> = scene.rays.iter().map(|rays| rays.kind.as_str()).collect();
+                assert_eq!(kinds, ["camera", "diffuse", "any"]);
+                for rays in &scene.rays {
+                    assert_eq!(rays.rays, 64 * 64);
+                    assert!(rays.hits > 0, "{}: no {} ray hits", scene.scene, rays.kind);
+                    assert_eq!(rays.difference.is_some(), has_rival);
+                    // Two triangles that cross, or an edge seen edge-on, may be told differently.
+                    assert!(rays.difference.is_none_or(|difference| difference.wrong <= 2), "{}: {rays:?}", scene.scene);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn parts_that_are_not_asked_for_are_not_measured() {
+        let report = run(&arguments(&["sphere:200", "--no-embree", "--only", "any"])).unwrap();
+        assert!(report.scenes[0].rebuild.is_none() && report.scenes[0].rays.len() == 1);
+    }
+}
