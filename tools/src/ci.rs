@@ -228,7 +228,7 @@ fn pictures(root: &Root) -> Result<Outcome> {
                 continue;
             };
             let mut diff = Command::new(&gridwalk);
-            diff.args(["diff", "--metric", "max"]).arg(first).arg(&picture);
+            diff.args(["diff", "--quiet", "--metric", "max"]).arg(first).arg(&picture);
             process::run(&mut diff).with_context(|| format!("with {} the picture is another one", describe(&environment)))?;
         }
     }
@@ -242,7 +242,7 @@ fn render(gridwalk: &Path, scene: &Path, folder: &Path, environment: &Environmen
     let name = scene.file_name().unwrap_or_default().to_string_lossy();
     let picture = folder.join(format!("{name}-{}.exr", settings.join("-")));
     let mut command = Command::new(gridwalk);
-    command.arg("render").arg(scene).args(["--quiet", "--size", "200x150", "--aov", "all", "-o"]).arg(&picture);
+    command.arg("render").arg(scene).args(["--quiet", "--size", "160x120", "--spp", "1", "--aov", "all", "-o"]).arg(&picture);
     process::run(command.envs(environment.iter().map(|(name, value)| (name, value))))?;
     Ok(picture)
 }

@@ -107,8 +107,8 @@ fn run(tool: Tool) -> Result<ExitCode> {
         Tool::Drivers { action: Drivers::Get { name } } => drivers::get(&name)?,
         Tool::Bench { options } => {
             let mut command = Command::new("cargo");
-            command.current_dir(std::env::current_dir()?).args(["run", "--quiet", "--release", "--manifest-path"]);
-            command.arg(root.join("Cargo.toml")).args(["--package", "gridwalk-bench", "--"]);
+            command.args(["run", "--quiet", "--release", "--manifest-path"]).arg(root.join("Cargo.toml"));
+            command.args(["--package", "gridwalk-bench", "--"]);
             return process::pass(command.args(options));
         }
     }
