@@ -1,7 +1,9 @@
 //! Integration tests of gridwalk.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs, reason = "a test that fails panics")]
 
+mod cli;
 mod image;
+mod kernels;
 mod render;
 mod repository;
 mod scene;

@@ -87,11 +87,16 @@ impl Failure {
 
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Failure {
+        use gridwalk_render::gridwalk::Error as LibraryError;
         let exit = match &error {
             RenderError::NoVulkan { .. } | RenderError::NoDevice { .. } | RenderError::NoSuchDevice { .. } => Exit::NoDevice,
-            RenderError::NoValidationLayer => Exit::NoDevice,
+            RenderError::NoValidationLayer | RenderError::Gridwalk(LibraryError::Unsuitable { .. }) => Exit::NoDevice,
             RenderError::Validation { .. } => Exit::Difference,
-            RenderError::OutOfDeviceMemory { .. } | RenderError::OutOfHostMemory => Exit::OutOfMemory,
+            RenderError::OutOfDeviceMemory { .. } | RenderError::OutOfHostMemory | RenderError::TooDense { .. } => Exit::OutOfMemory,
+            RenderError::Gridwalk(LibraryError::Capacity { .. } | LibraryError::DeviceLimit { .. }) => Exit::OutOfMemory,
+            RenderError::Setting { .. } | RenderError::Gridwalk(LibraryError::Option { .. }) => Exit::Usage,
+            RenderError::Scene { .. } => Exit::Input,
+            RenderError::Interrupted => Exit::Interrupted,
             _ => Exit::DeviceLost,
         };
         Failure { exit, error: error.into() }

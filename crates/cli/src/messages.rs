@@ -15,7 +15,7 @@ use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::args::low::Global;
-use crate::exit::{Exit, Failure, Result};
+use crate::exit::{Failure, Result};
 
 /// Directs messages to standard error, and to the log file if there is one.
 pub fn install(options: &Global) -> Result<()> {
@@ -27,19 +27,17 @@ pub fn install(options: &Global) -> Result<()> {
         (false, _) => LevelFilter::TRACE,
     };
     let screen = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).event_format(Plain { color: color() }).with_filter(level);
-    let file = match &options.log_file {
-        None => None,
-        Some(path) => {
-            let file = File::create(path).map_err(|error| {
-                Failure::new(Exit::Output, format!("cannot write the log {}: {error}; choose another place", path.display()))
-            })?;
-            let level = level.max(LevelFilter::DEBUG);
-            Some(tracing_subscriber::fmt::layer().with_writer(Mutex::new(file)).with_ansi(false).with_filter(level))
-        }
+    let file = options.log_file.as_ref().map(|path| File::create(path).map_err(|error| (path, error))).transpose();
+    let (file, failure) = match file {
+        Ok(file) => (file, None),
+        Err((path, error)) => (None, Some(Failure::from(gridwalk_render::image::Error::write(path, error)))),
     };
-    // Fails only if there is one already, which then serves.
+    let file = file.map(|file| {
+        tracing_subscriber::fmt::layer().with_writer(Mutex::new(file)).with_ansi(false).with_filter(level.max(LevelFilter::DEBUG))
+    });
+    // Fails only if there is one already, which then serves. Without a log file there is still somebody to tell that to.
     let _ = tracing_subscriber::registry().with(screen).with(file).try_init();
-    Ok(())
+    failure.map_or(Ok(()), Err)
 }
 
 /// Whether standard error takes colours: a terminal, and NO_COLOR (no-color.org) is not set.

@@ -57,6 +57,9 @@ impl Session {
         if settings.resolution.is_none() && report.density < settings.density {
             tracing::warn!("the grid was made coarser to fit: density {} instead of {}", report.density, settings.density);
         }
+        if let Some(wanted) = settings.resolution.filter(|wanted| *wanted != report.resolution) {
+            tracing::warn!("the resolution is {:?} instead of {wanted:?}: cells would be smaller than rounding allows", report.resolution);
+        }
         let (build_ms, build_steps) = if context.has_timestamps() { medians(builds) } else { (None, Vec::new()) };
         Ok(Session { context, scene: gpu_scene, grid, device: device.clone(), build_ms, build_steps, started })
     }

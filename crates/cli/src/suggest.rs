@@ -24,7 +24,8 @@ pub fn hint<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str> + Clone) 
 
 /// The same for a file that is not there: the nearest name in its folder.
 pub fn file_hint(path: &std::path::Path) -> String {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(std::path::Path::new("."));
+    let parent = path.parent().unwrap_or(std::path::Path::new(""));
+    let folder = if parent.as_os_str().is_empty() { std::path::Path::new(".") } else { parent };
     let wanted = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let Ok(entries) = std::fs::read_dir(folder) else {
         return format!("; there is no folder {}", folder.display());
@@ -32,7 +33,7 @@ pub fn file_hint(path: &std::path::Path) -> String {
     let names: Vec<String> =
         entries.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned())).take(10_000).collect();
     match nearest(&wanted, names.iter().map(String::as_str)) {
-        Some(name) => format!("; did you mean {}?", folder.join(name).display()),
+        Some(name) => format!("; did you mean {}?", parent.join(name).display()),
         None => String::new(),
     }
 }

@@ -53,6 +53,12 @@ pub struct BuildSizes {
     pub timestamp_count: u32,
 }
 
+/// Bytes of the regions of grid and scratch, reckoned without a device: for estimates, before there is one. [`crate::Tracer::build_sizes`] also
+/// knows the device's limits, and how its kernels are cut.
+pub fn region_bytes(capacity: &Capacity, shape: &Shape) -> (u64, u64) {
+    (GridLayout::new(capacity).size, ScratchLayout::new(capacity, shape).size)
+}
+
 /// A part of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Part {

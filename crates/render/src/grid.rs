@@ -316,7 +316,7 @@ fn geometry(scene: &GpuScene) -> Geometry {
 }
 
 /// Cells that Equation 3-1 asks for, with room for its rounding along each axis; a build lowers the density to what is there.
-fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<u32> {
+pub(crate) fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<u32> {
     let cells = match settings.resolution {
         Some(resolution) => {
             let cells = resolution.iter().map(|&cells| u64::from(cells)).fold(1_u64, u64::saturating_mul);
@@ -327,7 +327,8 @@ fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<u32> {
                     expected: "at most 268,435,456 cells in all",
                 });
             }
-            cells
+            // The build keeps a millionth of the capacity free, against floats that are rounded up.
+            cells + cells / 500_000 + 2
         }
         None => {
             if !(settings.density > 0.0 && settings.density.is_finite()) {

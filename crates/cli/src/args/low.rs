@@ -9,7 +9,7 @@ use crate::exit;
 
 /// Renders scenes and casts rays through a uniform grid that is built, every time, on any Vulkan device.
 #[derive(Debug, Parser)]
-#[command(name = "gridwalk", version, about, after_help = exit::HELP, max_term_width = 110, disable_help_subcommand = true, propagate_version = true)]
+#[command(name = "gridwalk", version, about, after_help = exit::HELP, max_term_width = 110, disable_help_subcommand = true, args_override_self = true, propagate_version = true)]
 pub struct Cli {
     #[command(flatten)]
     pub global: Global,

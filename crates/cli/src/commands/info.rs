@@ -1,14 +1,15 @@
 //! `gridwalk info`.
 
+use gridwalk_render::estimate_grid;
 use gridwalk_render::gridwalk_scene::Scene;
 use serde::Serialize;
 use std::fmt::Write;
 
-use crate::args::high::{Source, load_options};
+use crate::args::high::{self, Source, load_options};
 use crate::args::low::Info;
 use crate::exit::{Exit, Result};
 use crate::report::Header;
-use crate::{output, scene};
+use crate::{output, scene, session};
 
 #[derive(Serialize)]
 struct Report {
@@ -26,7 +27,19 @@ struct Report {
     texture_bytes: u64,
     lights: usize,
     cameras: Vec<String>,
+    grid: Option<Grid>,
     warnings: Vec<String>,
+}
+
+/// Reckoned on the CPU.
+#[derive(Serialize)]
+struct Grid {
+    resolution: [u32; 3],
+    density: f32,
+    cells: u32,
+    pairs: u64,
+    grid_bytes: u64,
+    scratch_bytes: u64,
 }
 
 #[derive(Serialize)]
@@ -40,7 +53,18 @@ struct Mesh {
 pub fn run(low: &Info) -> Result<Exit> {
     let source = Source::new(&low.scene);
     let scene = scene::read(&source, &load_options(&low.limits))?;
-    let report = report(&source, &scene);
+    let mut report = report(&source, &scene);
+    if report.triangles > report.dropped {
+        let grid = estimate_grid(&scene, &session::build_settings(&high::grid(&low.grid), &scene.defaults))?;
+        report.grid = Some(Grid {
+            resolution: grid.resolution,
+            density: grid.density,
+            cells: grid.cells,
+            pairs: grid.pairs,
+            grid_bytes: grid.grid_bytes,
+            scratch_bytes: grid.scratch_bytes,
+        });
+    }
     if low.json {
         output::print_json(&report)?
     } else {
@@ -79,6 +103,7 @@ fn report(source: &Source, scene: &Scene) -> Report {
         texture_bytes: scene.textures.iter().map(|texture| u64::from(texture.width) * u64::from(texture.height) * 4).sum(),
         lights: scene.lights.len(),
         cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
+        grid: None,
         warnings: scene.warnings.clone(),
     }
 }
@@ -112,6 +137,14 @@ fn text(report: &Report) -> String {
     let _ = writeln!(text, "lights      {}", report.lights);
     let cameras = if report.cameras.is_empty() { "none; the automatic one".to_owned() } else { report.cameras.join(", ") };
     let _ = writeln!(text, "cameras     {cameras}");
+    if let Some(grid) = &report.grid {
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        let resolution = grid.resolution.map(|n| n.to_string()).join(" x ");
+        let _ = writeln!(text, "grid        {resolution}: {} cells, {} pairs at density {}", grid.cells, grid.pairs, grid.density);
+        let each = (grid.grid_bytes + grid.scratch_bytes) / report.triangles.max(1);
+        let (kept, scratch) = (mib(grid.grid_bytes), mib(grid.scratch_bytes));
+        let _ = writeln!(text, "memory      {kept:.1} MiB, and {scratch:.1} MiB while it is built: {each} bytes a triangle");
+    }
     text
 }
 
