@@ -84,8 +84,8 @@ fn filled<T: Pod>(word: u32) -> T {
 impl Memory {
     /// Memory for a geometry and for `triangles`, `cells`, `pairs` and `bricks` at most, of which every word is `word`.
     pub fn filled(word: u32, shape: &Shape, positions: Vec<f32>, indices: Vec<u32>, [triangles, cells, pairs, bricks]: [u32; 4]) -> Memory {
+        let table = shape.table_entries(pairs) as usize;
         let (cells, pairs) = (cells.max(1), pairs.max(1) as usize);
-        let table = shape.table_entries(pairs as u32) as usize;
         let offsets = triangles as usize + 1;
         Memory {
             positions,
@@ -105,7 +105,7 @@ impl Memory {
             keys_a: vec![word; pairs],
             keys_b: vec![word; pairs],
             values_a: vec![word; pairs],
-            table: vec![word; table],
+            table: vec![word; table.max(1)],
             occupancy: vec![[word; 2]; bricks.div_ceil(shape.brick_tile()) as usize],
             distances_x: vec![word; bricks as usize],
             distances_y: vec![word; bricks as usize],

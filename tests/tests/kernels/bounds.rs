@@ -1,0 +1,72 @@
+use bytemuck::Zeroable;
+use gridwalk::kernels::{BOUNDS_REDUCE, BOUNDS_SPINE};
+use gridwalk::split_workgroups;
+use gridwalk_core::layout::Bounds;
+use gridwalk_core::twin::bounds_reduce::bounds_reduce;
+use gridwalk_core::twin::bounds_spine::bounds_spine;
+use gridwalk_tests::gpu::{Gpu, Mesh};
+use gridwalk_tests::meshes::{soup, spoil};
+
+use super::{TINY, assert_same, devices, many_groups, sizes};
+
+fn check(gpu: &Gpu, mesh: &Mesh, what: &str) {
+    let shape = gpu.tracer.shape();
+    let (vertices, triangles) = (mesh.positions.len() as u32, mesh.indices.len() as u32);
+    let tiles = shape.bounds_tiles(triangles);
+    let positions = gpu.upload("positions", &mesh.positions);
+    let indices = gpu.upload("indices", &mesh.indices);
+    let partials = gpu.guarded("partials", 32 * u64::from(tiles));
+    let scene = gpu.guarded("scene", 32);
+    gpu.launch(&BOUNDS_REDUCE, 0, &[&positions, &indices, &partials], &[vertices, triangles], split_workgroups(tiles));
+    gpu.launch(&BOUNDS_SPINE, 0, &[&partials, &scene], &[tiles], [1, 1, 1]);
+
+    let mut expected = vec![Bounds::zeroed(); tiles as usize];
+    let groups = split_workgroups(tiles);
+    let (positions, indices) = (bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices));
+    bounds_reduce(&shape, groups, positions, indices, &mut expected, vertices, triangles);
+    assert_same(&format!("{what}: partials"), &partials.read::<Bounds>(0, tiles as usize), &expected);
+    let mut whole = Bounds::EMPTY;
+    bounds_spine(&expected, &mut whole, tiles);
+    assert_same(&format!("{what}: scene"), &scene.read::<Bounds>(0, 1), &[whole]);
+}
+
+#[test]
+fn bounds_of_every_size() {
+    for gpu in devices() {
+        let shape = gpu.tracer.shape();
+        for size in sizes(shape.bounds_tile()) {
+            let mut mesh = soup(size as usize, 0.1, u64::from(size));
+            if size % 2 == 0 {
+                spoil(&mut mesh, 7, u64::from(size));
+            }
+            check(gpu, &mesh, &format!("{size} triangles, {shape:?}"));
+        }
+    }
+}
+
+#[test]
+fn bounds_of_many_workgroups() {
+    let gpu = Gpu::with_shape(TINY);
+    for size in many_groups(TINY.bounds_tile()) {
+        let mut mesh = soup(size as usize, 0.1, 1);
+        spoil(&mut mesh, 1000, 2);
+        check(gpu, &mesh, &format!("{size} triangles"));
+    }
+}
+
+#[test]
+fn bounds_of_a_million() {
+    for (size, gpu) in [((1 << 20) - 1, Gpu::with_shape(gridwalk::Shape::CPU)), ((1 << 20) + 1, Gpu::with_shape(gridwalk::Shape::GPU))] {
+        check(gpu, &soup(size, 0.1, 3), &format!("{size} triangles"));
+    }
+}
+
+#[test]
+fn bounds_of_dropped_triangles_alone() {
+    let gpu = Gpu::shared();
+    let mut mesh = soup(1000, 0.1, 4);
+    for vertex in &mut mesh.positions {
+        vertex[1] = f32::NAN;
+    }
+    check(gpu, &mesh, "all dropped");
+}

@@ -1,0 +1,61 @@
+use bytemuck::Zeroable;
+use gridwalk::kernels::CELL_RANGES;
+use gridwalk::{Report, Shape};
+use gridwalk_core::dispatch::split_workgroups;
+use gridwalk_core::layout::{BuildState, GridHeader};
+use gridwalk_core::twin::cell_ranges::cell_ranges;
+use gridwalk_tests::gpu::Gpu;
+use gridwalk_tests::random::Random;
+
+use super::{TINY, assert_same, devices, header, many_groups, sizes};
+
+fn check(gpu: &Gpu, cell_count: u32, keys: &[u32], what: &str) {
+    let shape = gpu.tracer.shape();
+    let count = keys.len() as u32;
+    let header = GridHeader { cell_count, ..header(&Default::default(), 1.0, [0; 3]) };
+    let grid = gpu.upload("grid", &[header]);
+    let state = gpu.upload("state", &[BuildState { pair_count: count, ..BuildState::default() }]);
+    let sorted = gpu.upload("keys", keys);
+    let mut expected = vec![[0u32; 2]; cell_count as usize];
+    let cells = gpu.upload("cells", &expected);
+    let mut report = Report::zeroed();
+    let device_report = gpu.upload("report", &[report]);
+    let groups = split_workgroups(count, shape.map_size);
+    gpu.launch(&CELL_RANGES, 0, &[&grid, &state, &sorted, &cells, &device_report], &[], groups);
+    cell_ranges(&shape, groups, cell_count, count, keys, &mut expected, &mut report);
+    assert_same(&format!("{what}: cells"), &cells.read::<[u32; 2]>(0, expected.len()), &expected);
+    assert_same(&format!("{what}: report"), &device_report.read::<Report>(0, 1), &[report]);
+    assert_eq!(report.pairs as usize, keys.iter().filter(|key| **key != cell_count).count(), "{what}");
+}
+
+/// Sorted keys of `cells` cells, with the sentinel at the end if there is a chance.
+fn keys(count: u32, cells: u32, seed: u64) -> Vec<u32> {
+    let mut random = Random::new(seed);
+    let mut keys: Vec<u32> = (0..count).map(|_| random.below(cells + 1)).collect();
+    keys.sort_unstable();
+    keys
+}
+
+#[test]
+fn cell_ranges_of_every_size() {
+    for gpu in devices() {
+        let shape = gpu.tracer.shape();
+        for size in sizes(shape.map_size) {
+            for cells in [1, 2, 100] {
+                let seed = u64::from(size);
+                check(gpu, cells, &keys(size, cells, seed), &format!("{size} pairs, {cells} cells, {shape:?}, seed {seed}"));
+            }
+        }
+        check(gpu, 5, &[5; 300], "sentinels alone");
+        check(gpu, 5, &[4; 300], "one cell alone");
+    }
+}
+
+#[test]
+fn cell_ranges_of_many_pairs() {
+    for size in many_groups(TINY.map_size) {
+        check(Gpu::with_shape(TINY), 1000, &keys(size, 1000, 1), &format!("{size} pairs"));
+    }
+    let size = 2_000_003;
+    check(Gpu::with_shape(Shape::CPU), 300_000, &keys(size, 300_000, 2), &format!("{size} pairs"));
+}

@@ -1,0 +1,96 @@
+//! Every kernel of the rebuild against its twin: integers bit for bit, floats too where they are sums, products and comparisons.
+
+mod bounds;
+mod bricks;
+mod cell_ranges;
+mod clear_cells;
+mod configure;
+mod overlap;
+mod pair_args;
+mod scan;
+mod sort;
+mod steps;
+
+use gridwalk::Shape;
+use gridwalk_core::layout::{Bounds, GridHeader};
+use gridwalk_core::twin::configure::{Configure, configure_header};
+use gridwalk_tests::gpu::{CANARY, Gpu, Mesh};
+
+/// Neither round numbers nor the defaults.
+pub const ODD: Shape = Shape {
+    map_size: 32,
+    scan_size: 32,
+    scan_items: 3,
+    reduce_items: 5,
+    reduce_bricks: 3,
+    sort_bits: 5,
+    sort_size: 64,
+    sort_keys: 7,
+    emit_pairs: 5,
+};
+
+/// So small that a few hundred thousand elements fill more than 65,535 workgroups. The scan's tiles are larger, since its one-workgroup
+/// spine over 65,537 of them must stay within lavapipe's 65,535 turns of all loops.
+pub const TINY: Shape = Shape {
+    map_size: 4,
+    scan_size: 8,
+    scan_items: 4,
+    reduce_items: 1,
+    reduce_bricks: 1,
+    sort_bits: 4,
+    sort_size: 4,
+    sort_keys: 1,
+    emit_pairs: 1,
+};
+
+/// All shapes under test.
+pub fn devices() -> Vec<&'static Gpu> {
+    [Shape::CPU, Shape::GPU, ODD, TINY].into_iter().map(Gpu::with_shape).collect()
+}
+
+/// Numbers of elements around the edges of subgroups, of workgroups and of tiles of `tile` elements.
+pub fn sizes(tile: u32) -> Vec<u32> {
+    let edges = [4, 8, 16, 32, 64, 256, tile, 3 * tile];
+    let mut sizes: Vec<u32> = [0, 1, 2, 3].into_iter().chain(edges.iter().flat_map(|edge| [edge - 1, *edge, edge + 1])).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    sizes
+}
+
+/// Numbers of elements for 65,535 to 65,537 workgroups of `size` elements.
+pub fn many_groups(size: u32) -> [u32; 3] {
+    [65_535 * size, 65_535 * size + 1, 65_537 * size]
+}
+
+/// Fails with the first place where two buffers differ.
+#[track_caller]
+pub fn assert_same<T: PartialEq + std::fmt::Debug>(what: &str, device: &[T], twin: &[T]) {
+    assert_eq!(device.len(), twin.len(), "{what}: lengths");
+    if let Some(at) = device.iter().zip(twin).position(|(device, twin)| device != twin) {
+        let count = device.iter().zip(twin).filter(|(device, twin)| device != twin).count();
+        panic!("{what}: {count} of {} differ, first at {at}: device {:?}, twin {:?}", device.len(), device[at], twin[at]);
+    }
+}
+
+/// A buffer that no kernel has written.
+pub fn untouched(len: usize) -> Vec<u32> {
+    vec![CANARY; len]
+}
+
+/// The header that the twin makes for a mesh: good enough to test later steps, and the same for device and twin.
+pub fn header(mesh: &Mesh, density: f32, fixed: [u32; 3]) -> GridHeader {
+    let mut scene = Bounds::EMPTY;
+    for triangle in 0..mesh.indices.len() as u32 {
+        let positions: &[f32] = bytemuck::cast_slice(&mesh.positions);
+        let vertices = mesh.positions.len() as u32;
+        match gridwalk_core::gather::gather_triangle(positions, bytemuck::cast_slice(&mesh.indices), vertices, triangle) {
+            None => scene.dropped += 1,
+            Some(v) => {
+                scene.low = v.into_iter().fold(scene.low, gridwalk_core::vector::min);
+                scene.high = v.into_iter().fold(scene.high, gridwalk_core::vector::max);
+            }
+        }
+    }
+    let info = Configure { triangle_count: mesh.indices.len() as u32, cell_capacity: 1 << 28, density, fixed, exact: true };
+    configure_header(&info, &scene, [[0; 2]; 4]).0
+}

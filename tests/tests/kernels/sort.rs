@@ -1,0 +1,121 @@
+use gridwalk::Shape;
+use gridwalk::kernels::{SCAN_DOWNSWEEP, SCAN_REDUCE, SCAN_SPINE, SORT_HISTOGRAM, SORT_SCATTER};
+use gridwalk_core::dispatch::split_workgroups;
+use gridwalk_core::layout::BuildState;
+use gridwalk_core::sort::writes_a;
+use gridwalk_core::twin::sort_histogram::sort_histogram;
+use gridwalk_core::twin::sort_scatter::{Pairs, sort_scatter};
+use gridwalk_tests::gpu::{CANARY, Gpu};
+use gridwalk_tests::random::Random;
+
+use super::{ODD, TINY, assert_same, devices, many_groups, sizes};
+
+/// Sorts pairs (key, place) as a build does and compares with the twins after each pass, and in the end with a stable sort.
+fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
+    let shape = gpu.tracer.shape();
+    let count = keys.len() as u32;
+    let tiles = count.div_ceil(shape.sort_tile());
+    let table_count = tiles << shape.sort_bits;
+    let pass_count = key_bits.div_ceil(shape.sort_bits);
+    let state = BuildState { pair_count: count, key_bits, pass_count, table_count, ..BuildState::default() };
+    let state = gpu.upload("state", &[state]);
+    let table = gpu.guarded("table", 4 * u64::from(table_count));
+    let partials = gpu.guarded("partials", 4 * u64::from(table_count.div_ceil(shape.scan_tile())));
+    let places: Vec<u32> = (0..count).collect();
+    let empty = vec![CANARY; keys.len()];
+    let in_a = writes_a(pass_count, 0);
+    let [(keys_a, values_a), (keys_b, values_b)] = [in_a, !in_a].map(|full| {
+        let of = |data| gpu.upload("pairs", if full { data } else { &empty });
+        (of(keys), of(&places))
+    });
+    let (mut from, mut to) = ((keys.to_vec(), places), (empty.clone(), empty.clone()));
+    for pass in 0..pass_count {
+        let groups = split_workgroups(tiles, 1);
+        let scan_groups = split_workgroups(table_count, shape.scan_tile());
+        gpu.launch(&SORT_HISTOGRAM, 0, &[&state, &keys_a, &keys_b, &table], &[pass], groups);
+        let mut expected = vec![CANARY; table_count as usize];
+        sort_histogram(&shape, groups, count, &from.0, &mut expected, pass);
+        assert_same(&format!("{what}: histogram of pass {pass}"), &table.read::<u32>(0, expected.len()), &expected);
+        gpu.launch(&SCAN_REDUCE, 0, &[&state, &table, &partials], &[1], scan_groups);
+        gpu.launch(&SCAN_SPINE, 0, &[&state, &partials], &[1], [1, 1, 1]);
+        gpu.launch(&SCAN_DOWNSWEEP, 0, &[&state, &partials, &table], &[1], scan_groups);
+        let memory = [&state, &keys_a, &keys_b, &values_a, &values_b, &table];
+        gpu.launch(&SORT_SCATTER, 0, &memory, &[pass], groups);
+        let table = table.read::<u32>(0, expected.len());
+        let pairs = Pairs { keys: from.0.as_slice(), values: from.1.as_slice() };
+        sort_scatter(&shape, groups, count, &pairs, &mut to.0, &mut to.1, &table, pass);
+        let (found_keys, found_values) = if writes_a(pass_count, pass + 1) { (&keys_a, &values_a) } else { (&keys_b, &values_b) };
+        assert_same(&format!("{what}: keys of pass {pass}"), &found_keys.read::<u32>(0, keys.len()), &to.0);
+        assert_same(&format!("{what}: values of pass {pass}"), &found_values.read::<u32>(0, keys.len()), &to.1);
+        std::mem::swap(&mut from, &mut to);
+    }
+    let mut expected: Vec<u32> = (0..count).collect();
+    expected.sort_by_key(|place| keys[*place as usize]);
+    assert_same(&format!("{what}: against a stable sort"), &values_b.read::<u32>(0, keys.len()), &expected);
+}
+
+fn keys(count: u32, bits: u32, seed: u64) -> Vec<u32> {
+    let mut random = Random::new(seed);
+    (0..count).map(|_| random.below(1 << bits)).collect()
+}
+
+#[test]
+fn sort_of_every_size() {
+    for gpu in devices() {
+        let shape = gpu.tracer.shape();
+        for size in sizes(shape.sort_tile()) {
+            let seed = u64::from(size);
+            check(gpu, &keys(size, 9, seed), 9, &format!("{size} pairs, {shape:?}, seed {seed}"));
+        }
+    }
+}
+
+#[test]
+fn sort_of_every_number_of_key_bits() {
+    for shape in [Shape::CPU, Shape::GPU, ODD] {
+        let gpu = Gpu::with_shape(shape);
+        for bits in 0..=28 {
+            let seed = u64::from(bits);
+            check(gpu, &keys(2_000, bits, seed), bits, &format!("{bits} bits, {shape:?}, seed {seed}"));
+        }
+    }
+}
+
+#[test]
+fn sort_of_special_orders() {
+    let count = 9_001;
+    let orders: [(&str, Vec<u32>); 6] = [
+        ("all equal", vec![77; count]),
+        ("all the largest", vec![(1 << 17) - 1; count]),
+        ("sorted", (0..count as u32).map(|i| i * 13).collect()),
+        ("reverse", (0..count as u32).rev().map(|i| i * 13).collect()),
+        ("few distinct", keys(count as u32, 2, 1).into_iter().map(|key| key * 40_000).collect()),
+        ("by turns", (0..count as u32).map(|i| i % 2 * 100_000).collect()),
+    ];
+    for gpu in devices() {
+        for (name, keys) in &orders {
+            check(gpu, keys, 17, &format!("{name}, {:?}", gpu.tracer.shape()));
+        }
+    }
+}
+
+#[test]
+fn sort_of_many_workgroups() {
+    let gpu = Gpu::with_shape(TINY);
+    for size in many_groups(TINY.sort_tile()) {
+        check(gpu, &keys(size, 4, 2), 4, &format!("{size} pairs"));
+    }
+}
+
+#[test]
+fn sort_of_millions() {
+    for (size, shape) in [((1 << 20) - 1, Shape::GPU), ((1 << 20) + 1, Shape::CPU), (3_000_017, Shape::CPU)] {
+        check(Gpu::with_shape(shape), &keys(size, 16, 3), 16, &format!("{size} pairs, {shape:?}"));
+    }
+}
+
+#[test]
+fn a_wrong_order_is_noticed() {
+    let found = std::panic::catch_unwind(|| assert_same("order", &[1, 3, 2], &[1, 2, 3]));
+    assert!(found.is_err());
+}

@@ -1,0 +1,184 @@
+//! Whole builds, a step at a time: each buffer after each step is the player's.
+
+use bytemuck::bytes_of;
+use gridwalk::plan::{Buffer, BuildInputs, Dispatch, Item, Step, build_plan};
+use gridwalk::{BuildOptions, Capacity, Overlap, Report};
+use gridwalk_core::layout::{BuildState, DispatchArguments, GridHeader};
+use gridwalk_core::twin::player::{Groups, Memory, PlayedStep};
+use gridwalk_tests::gpu::{Built, CANARY, Gpu, Mesh};
+use gridwalk_tests::meshes::{soup, spoil};
+
+use super::devices;
+
+const COMPARED: [Buffer; 18] = [
+    Buffer::Header,
+    Buffer::State,
+    Buffer::Arguments,
+    Buffer::SceneBounds,
+    Buffer::BoundsPartials,
+    Buffer::Triangles,
+    Buffer::Offsets,
+    Buffer::ScanPartials,
+    Buffer::KeysA,
+    Buffer::KeysB,
+    Buffer::ValuesA,
+    Buffer::References,
+    Buffer::Table,
+    Buffer::Cells,
+    Buffer::Bricks,
+    Buffer::Occupancy,
+    Buffer::DistancesX,
+    Buffer::DistancesY,
+];
+
+fn words(memory: &Memory, buffer: Buffer) -> &[u32] {
+    match buffer {
+        Buffer::Header => bytemuck::cast_slice(bytes_of(&memory.header)),
+        Buffer::State => bytemuck::cast_slice(bytes_of(&memory.state)),
+        Buffer::Arguments => bytemuck::cast_slice(bytes_of(&memory.arguments)),
+        Buffer::Report => bytemuck::cast_slice(bytes_of(&memory.report)),
+        Buffer::SceneBounds => bytemuck::cast_slice(bytes_of(&memory.scene_bounds)),
+        Buffer::BoundsPartials => bytemuck::cast_slice(&memory.bounds_partials),
+        Buffer::Triangles => bytemuck::cast_slice(&memory.triangles),
+        Buffer::Offsets => &memory.offsets,
+        Buffer::ScanPartials => &memory.scan_partials,
+        Buffer::KeysA => &memory.keys_a,
+        Buffer::KeysB => &memory.keys_b,
+        Buffer::ValuesA => &memory.values_a,
+        Buffer::References => &memory.references,
+        Buffer::Table => &memory.table,
+        Buffer::Cells => bytemuck::cast_slice(&memory.cells),
+        Buffer::Bricks => bytemuck::cast_slice(&memory.bricks),
+        Buffer::Occupancy => bytemuck::cast_slice(&memory.occupancy),
+        Buffer::DistancesX => &memory.distances_x,
+        Buffer::DistancesY => &memory.distances_y,
+        other => panic!("{other:?} is no memory of a build"),
+    }
+}
+
+/// The first word of a buffer in which device and player differ; zeros of either sign are the same.
+fn first_difference(gpu: &Gpu, built: &Built, memory: &Memory, buffer: Buffer) -> Option<String> {
+    let expected = words(memory, buffer);
+    let size = gpu.tracer.build_region(&built.info, buffer).size;
+    assert_eq!(size, 4 * expected.len() as u64, "{buffer:?}: the player's memory has another size");
+    let found: Vec<u32> = built.part(gpu, buffer, expected.len());
+    let unsigned = |word: u32| if word == 1 << 31 { 0 } else { word };
+    let at = found.iter().zip(expected).position(|(a, b)| unsigned(*a) != unsigned(*b))?;
+    Some(format!("{buffer:?} word {at}: device {:#x}, player {:#x}", found[at], expected[at]))
+}
+
+/// Takes what the device configured, after a look at whether it may be so: quotients are not the same on every device.
+fn adopt(gpu: &Gpu, built: &Built, memory: &mut Memory) {
+    let header: GridHeader = built.part(gpu, Buffer::Header, 1)[0];
+    let close = (0..3).all(|axis| {
+        let sizes = [header.cell_size[axis], memory.header.cell_size[axis]];
+        header.resolution[axis].abs_diff(memory.header.resolution[axis]) <= 1
+            && (header.resolution != memory.header.resolution || (sizes[0] - sizes[1]).abs() <= 1e-6 * sizes[1])
+    });
+    assert!(close, "configure: device {header:?}, player {:?}", memory.header);
+    let GridHeader { cell_size, inverse_cell_size, resolution, cell_count, .. } = header;
+    assert_eq!(header, GridHeader { cell_size, inverse_cell_size, resolution, cell_count, ..memory.header });
+    memory.header = header;
+    if resolution != built_resolution(memory) {
+        memory.state = built.part::<BuildState>(gpu, Buffer::State, 1)[0];
+        memory.arguments = built.part::<DispatchArguments>(gpu, Buffer::Arguments, 1)[0];
+        memory.report = built.part::<Report>(gpu, Buffer::Report, 1)[0];
+    }
+}
+
+fn built_resolution(memory: &Memory) -> [u32; 3] {
+    memory.report.resolution
+}
+
+fn played<'a>(step: &Step, words: &'a [u32]) -> PlayedStep<'a> {
+    let groups = match step.dispatch {
+        Dispatch::Direct(groups) => Groups::Direct(groups),
+        Dispatch::Indirect(_, offset) => Groups::Indirect(offset),
+    };
+    PlayedStep { kernel: step.kernel.name, groups, words, exact: step.variant == 1 }
+}
+
+/// Runs a build a step at a time and names the first step after which a buffer is not the player's.
+fn first_wrong_step(gpu: &Gpu, mesh: &Mesh, capacity: Capacity, options: BuildOptions, spoiled: Option<&str>) -> Option<String> {
+    let shape = gpu.tracer.shape();
+    let built = gpu.prepare(mesh, capacity, options);
+    let inputs = BuildInputs {
+        triangle_count: mesh.indices.len() as u32,
+        vertex_count: mesh.positions.len() as u32,
+        density: options.density,
+        resolution: options.resolution,
+        exact: options.overlap == Overlap::Exact,
+    };
+    let plan = build_plan(&capacity, &inputs, &shape);
+    let bricks = gpu.tracer.build_region(&built.info, Buffer::Bricks).size / 16;
+    let positions = mesh.positions.iter().flatten().copied().collect();
+    let indices = mesh.indices.iter().flatten().copied().collect();
+    let sizes = [capacity.triangles, capacity.cells, capacity.pairs, bricks as u32];
+    let mut memory = Memory::filled(CANARY, &shape, positions, indices, sizes);
+    let addresses = [Buffer::Cells, Buffer::References, Buffer::Triangles, Buffer::Bricks].map(|buffer| {
+        let address = gpu.tracer.build_region(&built.info, buffer).address;
+        [address as u32, (address >> 32) as u32]
+    });
+    for (index, item) in plan.items().iter().enumerate() {
+        let Item::Step(step) = item else { continue };
+        gpu.run_item(&built, item);
+        let words = step.words();
+        memory.play(&shape, &played(step, &words), addresses).unwrap();
+        if step.kernel.name == "configure" {
+            adopt(gpu, &built, &mut memory);
+        }
+        if spoiled == Some(step.kernel.name) {
+            memory.offsets[1] ^= 1;
+        }
+        let wrong = COMPARED.into_iter().chain([Buffer::Report]).find_map(|buffer| first_difference(gpu, &built, &memory, buffer));
+        if let Some(wrong) = wrong {
+            return Some(format!("step {index}, {}: {wrong}", step.kernel.name));
+        }
+    }
+    None
+}
+
+#[test]
+fn every_step_of_a_build_is_the_players() {
+    let mut mesh = soup(3_000, 0.05, 21);
+    spoil(&mut mesh, 50, 22);
+    for gpu in devices() {
+        for overlap in [Overlap::Box, Overlap::Exact] {
+            for density in [0.01, 2.0] {
+                let options = BuildOptions { density, overlap, ..BuildOptions::default() };
+                let capacity = Capacity { triangles: 4_000, cells: 10_000, pairs: 40_000 };
+                let wrong = first_wrong_step(gpu, &mesh, capacity, options, None);
+                assert_eq!(wrong, None, "{options:?} {:?}", gpu.tracer.shape());
+            }
+        }
+    }
+}
+
+#[test]
+fn every_step_of_special_builds_is_the_players() {
+    let gpu = Gpu::shared();
+    let room = Capacity { triangles: 3_000, cells: 5_000, pairs: 30_000 };
+    let options = BuildOptions::default();
+    let cases = [
+        ("empty", soup(0, 0.0, 0), room, options),
+        ("one triangle", soup(1, 0.5, 1), room, options),
+        ("no capacity", soup(0, 0.0, 0), Capacity { triangles: 0, cells: 0, pairs: 0 }, options),
+        ("too many pairs", soup(3_000, 0.2, 2), Capacity { pairs: 7_777, ..room }, options),
+        ("too many cells", soup(3_000, 0.05, 3), Capacity { cells: 1_000, ..room }, options),
+        ("fixed", soup(100, 0.3, 4), room, BuildOptions { resolution: Some([7, 30, 2]), ..options }),
+        ("one cell", soup(500, 0.3, 5), room, BuildOptions { resolution: Some([1, 1, 1]), ..options }),
+    ];
+    for (name, mesh, capacity, options) in cases {
+        for overlap in [Overlap::Box, Overlap::Exact] {
+            let wrong = first_wrong_step(gpu, &mesh, capacity, BuildOptions { overlap, ..options }, None);
+            assert_eq!(wrong, None, "{name}, {overlap:?}");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_step_is_named() {
+    let mesh = soup(100, 0.1, 23);
+    let wrong = first_wrong_step(Gpu::shared(), &mesh, mesh.capacity(), BuildOptions::default(), Some("overlap_count"));
+    assert!(wrong.as_deref().is_some_and(|wrong| wrong.contains("overlap_count: Offsets word 1")), "{wrong:?}");
+}
