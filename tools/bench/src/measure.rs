@@ -1,13 +1,13 @@
 //! One scene, measured: ours and the rival in turns.
 
 use anyhow::{Context as _, Result};
-use gridwalk::{Capacity, Hit, UNFINISHED};
+use gridwalk::{Capacity, Hit, Ray, UNFINISHED};
 use gridwalk_render::{BuildSettings, GpuScene, Grid, GridBuilder, RayBatch, StepTime};
 
 use crate::arguments::{Arguments, Overlap, Part};
 use crate::embree::{self, Embree};
 use crate::rays::{camera_rays, diffuse_rays};
-use crate::report::{Comparison, Difference, RayReport, Run, SceneReport, Step, Times, median};
+use crate::report::{Comparison, Difference, Example, RayReport, Run, SceneReport, Step, Times, median};
 use crate::scenes::Loaded;
 
 /// How a build is to be made.
@@ -117,12 +117,12 @@ fn median_steps(runs: &[Vec<StepTime>]) -> Vec<Step> {
     steps.collect()
 }
 
-fn closest(kind: &str, grid: &Grid, theirs: Option<&embree::Scene>, rays: &[gridwalk::Ray], runs: u32) -> Result<RayReport> {
+fn closest(kind: &str, grid: &Grid, theirs: Option<&embree::Scene>, rays: &[Ray], runs: u32) -> Result<RayReport> {
     let mut batch = RayBatch::new(grid.context(), rays)?;
     let mut their_hits = vec![Hit::MISS; rays.len()];
     let times = turns(runs, || Ok(batch.closest_hit(grid)?), || Ok(theirs.map(|scene| scene.closest_hit(rays, &mut their_hits))))?;
     let hits = batch.read_hits()?;
-    let difference = theirs.map(|_| difference(&hits, &their_hits));
+    let difference = theirs.map(|_| difference(rays, &hits, &their_hits));
     let count = |wanted: fn(&Hit) -> bool| hits.iter().filter(|hit| wanted(hit)).count() as u64;
     Ok(ray_report(
         kind,
@@ -134,21 +134,23 @@ fn closest(kind: &str, grid: &Grid, theirs: Option<&embree::Scene>, rays: &[grid
     ))
 }
 
-fn any_hit(kind: &str, grid: &Grid, theirs: Option<&embree::Scene>, rays: &[gridwalk::Ray], runs: u32) -> Result<RayReport> {
+fn any_hit(kind: &str, grid: &Grid, theirs: Option<&embree::Scene>, rays: &[Ray], runs: u32) -> Result<RayReport> {
     let mut batch = RayBatch::new(grid.context(), rays)?;
     let mut their_answers = vec![0; rays.len()];
     let times = turns(runs, || Ok(batch.any_hit(grid)?), || Ok(theirs.map(|scene| scene.any_hit(rays, &mut their_answers))))?;
     let answers = batch.read_occluded()?;
-    let wrong = answers.iter().zip(&their_answers).filter(|(ours, theirs)| ours != theirs).count() as u64;
+    // A hit is nearer than none.
+    let as_hits = |answers: &[u32]| -> Vec<Hit> {
+        let hit = |&answer: &u32| match answer {
+            0 => Hit::MISS,
+            UNFINISHED => Hit { triangle: UNFINISHED, ..Hit::MISS },
+            _ => Hit { t: 0.0, u: 0.0, v: 0.0, triangle: 0 },
+        };
+        answers.iter().map(hit).collect()
+    };
+    let difference = theirs.map(|_| difference(rays, &as_hits(&answers), &as_hits(&their_answers)));
     let count = |wanted: u32| answers.iter().filter(|&&answer| answer == wanted).count() as u64;
-    Ok(ray_report(
-        kind,
-        rays.len(),
-        count(1),
-        count(UNFINISHED),
-        times.compare(grid.context().is_cpu()),
-        theirs.map(|_| Difference { triangle: 0, wrong }),
-    ))
+    Ok(ray_report(kind, rays.len(), count(1), count(UNFINISHED), times.compare(grid.context().is_cpu()), difference))
 }
 
 /// Milliseconds of ours and theirs, run in turns, the first turn left out.
@@ -199,13 +201,30 @@ fn ray_report(kind: &str, rays: usize, hits: u64, unfinished: u64, time: Compari
     }
 }
 
+/// Rays that are listed as examples of a difference.
+const EXAMPLES: usize = 16;
+
 /// Counts how hits differ.
-fn difference(ours: &[Hit], theirs: &[Hit]) -> Difference {
+fn difference(rays: &[Ray], ours: &[Hit], theirs: &[Hit]) -> Difference {
     let mut difference = Difference::default();
-    for (ours, theirs) in ours.iter().zip(theirs) {
-        difference.triangle += u64::from(ours.triangle != theirs.triangle);
-        let far = (ours.t - theirs.t).abs() > 1e-4 * ours.t.abs().max(theirs.t.abs());
-        difference.wrong += u64::from(ours.is_hit() != theirs.is_hit() || ours.triangle == UNFINISHED || ours.is_hit() && far);
+    for (index, (ours, theirs)) in ours.iter().zip(theirs).enumerate() {
+        let same = ours.t == theirs.t || (ours.t - theirs.t).abs() <= 1e-4 * ours.t.abs().max(theirs.t.abs()).min(f32::MAX);
+        if same && ours.triangle != UNFINISHED {
+            difference.triangle += u64::from(ours.triangle != theirs.triangle);
+            continue;
+        }
+        let is_nearer = ours.t < theirs.t && ours.triangle != UNFINISHED;
+        *(if is_nearer { &mut difference.nearer } else { &mut difference.farther }) += 1;
+        if let Some(ray) = rays.get(index).filter(|_| difference.examples.len() < EXAMPLES) {
+            let answer = |hit: &Hit| hit.is_hit().then_some((hit.t, hit.triangle));
+            difference.examples.push(Example {
+                ray: index as u64,
+                origin: ray.origin,
+                direction: ray.direction,
+                ours: answer(ours),
+                embree: answer(theirs),
+            });
+        }
     }
     difference
 }
@@ -217,10 +236,15 @@ mod tests {
     #[test]
     fn differences_are_seen() {
         let hit = |t: f32, triangle: u32| Hit { t, u: 0.0, v: 0.0, triangle };
-        let ours = [hit(1.0, 1), hit(1.0, 1), hit(1.0, 1), Hit::MISS, Hit::MISS, hit(f32::INFINITY, UNFINISHED)];
-        let theirs = [hit(1.0, 1), hit(1.000_01, 2), hit(1.01, 1), Hit::MISS, hit(3.0, 0), Hit::MISS];
-        assert_eq!(difference(&ours, &theirs), Difference { triangle: 3, wrong: 3 });
-        assert_eq!(difference(&ours[..4], &ours[..4]), Difference::default());
+        let rays = [Ray { origin: [0.0; 3], t_min: 0.0, direction: [1.0; 3], t_max: 9.0 }; 7];
+        let lost = Hit { triangle: UNFINISHED, ..Hit::MISS };
+        let ours = [hit(1.0, 1), hit(1.0, 1), hit(1.0, 1), Hit::MISS, Hit::MISS, lost, hit(2.0, 3)];
+        let theirs = [hit(1.0, 1), hit(1.000_01, 2), hit(1.01, 1), Hit::MISS, hit(3.0, 0), Hit::MISS, Hit::MISS];
+        let found = difference(&rays, &ours, &theirs);
+        assert_eq!((found.triangle, found.nearer, found.farther), (1, 2, 2));
+        assert_eq!(found.examples.iter().map(|example| example.ray).collect::<Vec<_>>(), [2, 4, 5, 6]);
+        assert_eq!(found.examples[1].embree, Some((3.0, 0)));
+        assert_eq!(difference(&rays, &ours[..5], &ours[..5]), Difference::default());
     }
 
     #[test]

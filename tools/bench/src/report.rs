@@ -113,13 +113,32 @@ pub struct RayReport {
     pub difference: Option<Difference>,
 }
 
-/// How two rounds of hits differ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// How two rounds of hits differ. Distances are the same if they differ by at most 1e-4 of the greater; a miss is infinitely far.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
-    /// Another triangle, at whatever distance: neighbours share edges.
+    /// Another triangle at the same distance: neighbours share edges.
     pub triangle: u64,
-    /// Hit against miss, or distances that differ by more than 1e-4 of the greater.
-    pub wrong: u64,
+    /// We hit something nearer than the rival.
+    pub nearer: u64,
+    /// We hit something farther than the rival, or gave up.
+    pub farther: u64,
+    /// The first of those that are nearer or farther.
+    pub examples: Vec<Example>,
+}
+
+/// A ray that was answered differently.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Example {
+    /// Its place among the rays.
+    pub ray: u64,
+    /// Where it starts.
+    pub origin: [f32; 3],
+    /// Where it goes.
+    pub direction: [f32; 3],
+    /// Our distance and triangle; none for a miss.
+    pub ours: Option<(f32, u32)>,
+    /// The rival's.
+    pub embree: Option<(f32, u32)>,
 }
 
 /// Times of both. Medians, unless a name says otherwise.
@@ -286,7 +305,8 @@ impl Report {
             "processor",
             "hits",
             "other triangle",
-            "wrong",
+            "nearer",
+            "farther",
         ])];
         for scene in &self.scenes {
             let times = |comparison: &Comparison| [number(Some(comparison.ours.median_ms)), number(comparison.embree.map(|t| t.median_ms))];
@@ -304,7 +324,7 @@ impl Report {
                 row.extend([number(rays.time.best_ratio), number(rays.time.processor_ratio)]);
                 row.push(format!("{:.1} %", rays.hits as f64 / rays.rays.max(1) as f64 * 100.0));
                 let difference = |part: fn(&Difference) -> u64| rays.difference.as_ref().map_or("-".to_owned(), |d| part(d).to_string());
-                row.extend([difference(|d| d.triangle), difference(|d| d.wrong)]);
+                row.extend([difference(|d| d.triangle), difference(|d| d.nearer), difference(|d| d.farther)]);
                 if rays.unfinished > 0 {
                     row.push(format!("{} unfinished", rays.unfinished));
                 }
@@ -313,7 +333,7 @@ impl Report {
         }
         text += &format!("\n{}", columns(&rows));
 
-        for scene in self.scenes.iter().filter(|scene| !scene.steps.is_empty()) {
+        for scene in &self.scenes {
             let sum: f64 = scene.steps.iter().map(|step| step.ms).sum();
             let mut rows = vec![head(&[&scene.scene, "kind", "launches", "ms", "share"])];
             let shown = scene.steps.iter().filter(|step| filter.is_none_or(|filter| step.name.contains(filter)));
@@ -321,7 +341,9 @@ impl Report {
                 let share = format!("{:.1} %", step.ms / sum.max(f64::MIN_POSITIVE) * 100.0);
                 vec![step.name.clone(), step.kind.clone(), step.count.to_string(), format!("{:.3}", step.ms), share]
             }));
-            text += &format!("\n{}", columns(&rows));
+            if rows.len() > 1 {
+                text += &format!("\n{}", columns(&rows));
+            }
         }
         text
     }
