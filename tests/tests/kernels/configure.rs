@@ -61,7 +61,7 @@ fn check(gpu: &Gpu, info: Configure, scene: Bounds, what: &str) -> GridHeader {
     // All that is no quotient is the twin's.
     let GridHeader { cell_size, inverse_cell_size, resolution, cell_count, .. } = header;
     assert_eq!(header, GridHeader { cell_size, inverse_cell_size, resolution, cell_count, ..twin }, "{what}");
-    assert_eq!(u64::from(cell_count), resolution.iter().map(|n| u64::from(*n)).product(), "{what}");
+    assert_eq!(u64::from(cell_count), resolution.iter().map(|n| u64::from(*n)).product::<u64>(), "{what}");
     assert!(cell_count <= info.cell_capacity.max(1), "{what}: {header:?}");
     let end = boundary(header.box_min, header.cell_size, resolution.map(|n| n as f32));
     assert!((0..3).all(|axis| end[axis] >= header.box_max[axis]), "{what}: the last boundary {end:?} is inside of {header:?}");
