@@ -447,6 +447,16 @@ const _: () = {
     assert!(size_of::<Host>() == 24);
 };
 const _: () = {
+    use gridwalk_core::layout::Brick as Host;
+    assert!(core::mem::offset_of!(Host, mask) == 0);
+    assert!(size(|host: &Host| &host.mask) == 8);
+    assert!(core::mem::offset_of!(Host, distance) == 8);
+    assert!(size(|host: &Host| &host.distance) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 12);
+    assert!(size(|host: &Host| &host.reserved) == 4);
+    assert!(size_of::<Host>() == 16);
+};
+const _: () = {
     use crate::push::BrickDistanceX as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);

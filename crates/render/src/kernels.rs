@@ -650,8 +650,8 @@ const _: () = {
 };
 const _: () = {
     use crate::layout::Surface as Host;
-    assert!(core::mem::offset_of!(Host, position) == 0);
-    assert!(size(|host: &Host| &host.position) == 12);
+    assert!(core::mem::offset_of!(Host, start) == 0);
+    assert!(size(|host: &Host| &host.start) == 12);
     assert!(core::mem::offset_of!(Host, offset) == 12);
     assert!(size(|host: &Host| &host.offset) == 4);
     assert!(core::mem::offset_of!(Host, normal) == 16);

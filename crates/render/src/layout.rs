@@ -117,7 +117,7 @@ pub(crate) struct Path {
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Surface {
-    pub(crate) position: [f32; 3],
+    pub(crate) start: [f32; 3],
     pub(crate) offset: f32,
     pub(crate) normal: [f32; 3],
     pub(crate) shininess: f32,

@@ -31,7 +31,7 @@ void main() {
         outgoing = reflect(incoming, surface.geometric_normal);
     }
     Ray ray;
-    ray.origin = surface.position + surface.geometric_normal * surface.offset;
+    ray.origin = surface.start + surface.geometric_normal * surface.offset;
     ray.t_min = 0.0;
     ray.direction = normalize(outgoing);
     ray.t_max = GRIDWALK_INFINITY;

@@ -41,7 +41,7 @@ void main() {
     if (is_hit) {
         HitPoint point = hit_point(scene, ray, hit);
         Material material = Materials(scene.table.materials).material[point.material];
-        surface.position = point.position;
+        surface.start = point.start;
         surface.offset = point.offset;
         surface.normal = point.normal;
         surface.geometric_normal = point.geometric_normal;

@@ -17,7 +17,7 @@ const float LIGHT_REACH = 0.9999;
 LightSample sample_light(Light light, Surface surface, vec3 view) {
     LightSample result;
     result.radiance = vec3(0.0);
-    vec3 origin = surface.position + surface.geometric_normal * surface.offset;
+    vec3 origin = surface.start + surface.geometric_normal * surface.offset;
     vec3 direction = -light.direction;
     vec3 irradiance = light.intensity;
     result.shadow.origin = origin;
@@ -42,8 +42,7 @@ LightSample sample_light(Light light, Surface surface, vec3 view) {
         }
     }
     float cosine = dot(surface.normal, direction);
-    // Light from behind the triangle reaches the eye on no way, whatever a smooth normal says.
-    if (!(cosine > 0.0) || !(dot(surface.geometric_normal, direction) > 0.0)) {
+    if (!(cosine > 0.0)) {
         return result;
     }
     vec3 halfway = normalize(direction + view);

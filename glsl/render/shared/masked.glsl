@@ -23,7 +23,7 @@ bool masked_walk(uint index, Ray ray, out Hit hit) {
         }
         bool given_up = !walk_run(walk, header, seen);
         if (given_up && !LAST) {
-            walks.walk[index] = walk_save(walk);
+            walks.walk[index] = walk_save(walk, header);
             return false;
         }
         if (given_up) {

@@ -21,8 +21,8 @@ struct Path {
 
 // A hit, ready to be lit. Both normals are on the side of the viewer.
 struct Surface {
-    vec3 position;
-    float offset; // how far secondary rays start off the surface
+    vec3 start; // secondary rays start here, and off the surface by
+    float offset; // as much along the geometric normal
     vec3 normal;
     float shininess;
     vec3 geometric_normal;

@@ -8,6 +8,7 @@
 // A hit's place in the scene.
 struct HitPoint {
     vec3 position;
+    vec3 start; // of secondary rays, but for the offset
     float offset;
     vec3 normal;
     vec3 geometric_normal;
@@ -58,6 +59,10 @@ vec3 mapped_normal(SceneIn scene, Material material, vec3 normal, vec3 edge1, ve
     return unit(bent, normal);
 }
 
+// A point of a triangle moved out to where it lies on the plane through a vertex at a right angle to the vertex's normal; where it lies
+// outside of that plane it stays.
+vec3 lifted(vec3 point, vec3 vertex, vec3 normal) { return point - normal * min(dot(point - vertex, normal), 0.0); }
+
 HitPoint hit_point(SceneIn scene, Ray ray, Hit hit) {
     HitPoint point;
     uvec3 vertex = scene_indices(scene, hit.triangle);
@@ -79,10 +84,22 @@ HitPoint hit_point(SceneIn scene, Ray ray, Hit hit) {
     vec3 geometric = unit(cross(edge1, edge2), backwards);
 
     SceneFloats normals = SceneFloats(scene.table.normals);
-    vec3 smooth_normal = scene_vec3(normals, vertex.x) * w + scene_vec3(normals, vertex.y) * hit.u + scene_vec3(normals, vertex.z) * hit.v;
-    vec3 normal = unit(smooth_normal, geometric);
+    vec3 normal_a = scene_vec3(normals, vertex.x);
+    vec3 normal_b = scene_vec3(normals, vertex.y);
+    vec3 normal_c = scene_vec3(normals, vertex.z);
+    vec3 normal = unit(normal_a * w + normal_b * hit.u + normal_c * hit.v, geometric);
     // The file's normals say which side is outside, its windings often do not.
     geometric = dot(geometric, normal) < 0.0 ? -geometric : geometric;
+    // Both sides are shaded alike: everything is turned to the viewer's side of the triangle.
+    bool behind = dot(geometric, ray.direction) > 0.0;
+    float side = behind ? -1.0 : 1.0;
+    // Triangles lie inside of the smooth surface that their normals speak of, and would shadow each other where it is still lit: rays
+    // start on that surface (Hanika 2021, "Hacking the shadow terminator").
+    point.start = lifted(point.position, a, normal_a * side) * w + lifted(point.position, b, normal_b * side) * hit.u
+        + lifted(point.position, c, normal_c * side) * hit.v;
+    if (any(isnan(point.start)) || any(isinf(point.start))) {
+        point.start = point.position;
+    }
 
     SceneUvs uvs = SceneUvs(scene.table.uvs);
     vec2 uv_a = uvs.uv[vertex.x];
@@ -97,10 +114,8 @@ HitPoint hit_point(SceneIn scene, Ray ray, Hit hit) {
         normal = mapped_normal(scene, material, normal, edge1, edge2, point.uv, uv_b - uv_a, uv_c - uv_a);
     }
 
-    // Both sides are shaded alike: everything is turned to the viewer's side of the triangle.
-    bool behind = dot(geometric, ray.direction) > 0.0;
-    point.geometric_normal = behind ? -geometric : geometric;
-    point.normal = behind ? -normal : normal;
+    point.geometric_normal = geometric * side;
+    point.normal = normal * side;
     return point;
 }
 

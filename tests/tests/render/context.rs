@@ -107,7 +107,7 @@ fn memory_may_run_out_anywhere() {
     let scene = scene(vec![(generate::sphere([0.0; 3], 1.0, 48), matt(0.5))]);
     let rays = vec![gridwalk::Ray { origin: [0.0, 0.0, 5.0], t_min: 0.0, direction: [0.0, 0.0, -1.0], t_max: 100.0 }; 1000];
     let mut failures = 0;
-    let mut limit = 1_u64 << 12;
+    let mut limit = 1_u64 << 14;
     loop {
         let context = limited(limit);
         let made = (|| {
@@ -129,7 +129,7 @@ fn memory_may_run_out_anywhere() {
         }
         assert_eq!(context.allocated_bytes(), 0);
         assert_eq!(context.take_validation_messages(), Vec::<String>::new());
-        limit += limit / 2;
+        limit *= 2;
         assert!(limit < 1 << 28, "never enough");
     }
     assert!(failures > 3, "{failures} failures: the limit has no effect");

@@ -174,15 +174,15 @@ fn a_sphere_casts_no_shadow_on_its_lit_side() {
         let camera =
             Camera { eye: [0.0, 0.0, 5.0 * scale], up: [0.0, 1.0, 0.0], orthographic_height: Some(2.2 * scale), ..from_above(1.0) };
         let frame = render(&scene, &camera, &with_all_layers(120, 120));
-        let normals = frame.layers.get("Ng").unwrap().floats().unwrap();
+        let normals = frame.layers.get("N").unwrap().floats().unwrap();
         let (mut lit, mut wrong) = (0, 0);
         for (normal, value) in normals.chunks_exact(3).zip(reds(&frame.layers)) {
             let cosine = (normal[0] + 0.4 * normal[1] + 0.3 * normal[2]) / 1.25_f32.sqrt();
-            // Close to the edge of the light the smooth normal may face away from it.
-            if cosine > 0.05 {
+            // Up to the last degree, although triangles face away from the light where the smooth normal still faces it.
+            if cosine > 0.02 {
                 lit += 1;
                 wrong += usize::from(value <= 0.0);
-            } else if cosine < 0.0 {
+            } else if cosine < -1e-5 {
                 assert_eq!(value, 0.0);
             }
         }
