@@ -2,7 +2,7 @@
 //! headers (`rtcore_ray.h`, `rtcore_common.h`), which both versions share but for the arguments of the queries.
 
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
-use std::mem::offset_of;
+use std::mem::{ManuallyDrop, offset_of};
 use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -107,8 +107,6 @@ struct Functions {
 struct Loaded {
     functions: Functions,
     device: Handle,
-    /// Behind the device, so that it is unloaded last.
-    _library: Library,
 }
 
 impl Drop for Loaded {
@@ -151,6 +149,8 @@ impl Embree {
     }
 
     fn new(library: Library, path: PathBuf, threads: u32) -> Result<Embree> {
+        // Never unloaded: Embree's worker threads (TBB) outlive its device and would run on in code that is gone.
+        let library = ManuallyDrop::new(library);
         fn get<T: Copy>(library: &Library, name: &str) -> Result<T> {
             // SAFETY: the type is that of the function in Embree's headers, for every name below.
             let symbol = unsafe { library.get::<T>(name.as_bytes()) };
@@ -185,7 +185,7 @@ impl Embree {
             attach_geometry: get(&library, "rtcAttachGeometry")?,
             query,
         };
-        Ok(Embree { loaded: Arc::new(Loaded { functions, device: Handle(device), _library: library }), path, threads })
+        Ok(Embree { loaded: Arc::new(Loaded { functions, device: Handle(device) }), path, threads })
     }
 
     /// Its version.

@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn a_small_run_makes_a_table_and_json() {
         for (words, has_rival) in
-            [(&["bumpy:500", "soup:300", "--overlap", "exact"][..], None), (&["sphere:200", "--no-embree"], Some(false))]
+            [(&["bumpy:500", "soup:300", "--overlap", "exact"][..], None), (&["bumpy:300", "--no-embree"], Some(false))]
         {
             let report = run(&arguments(words)).unwrap();
             let has_rival = has_rival.unwrap_or(report.embree.is_some());
