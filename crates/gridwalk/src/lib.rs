@@ -1,7 +1,89 @@
 //! Builds uniform grids over triangles on a Vulkan device that it is given, and traces rays through them.
 //!
-//! The crate records commands into the caller's command buffers, on the caller's device, in the caller's memory. It never allocates device
-//! memory, submits or waits.
+//! The crate records commands into the caller's command buffers, on the caller's device, in the caller's memory. After [`Tracer::new`] it
+//! creates nothing, and it never allocates device memory, maps, submits or waits. It implements chapter 3 of a thesis on GPU grid
+//! construction for ray tracing dynamic scenes (Ivson, PUC-Rio): the grid is cheap enough to be rebuilt from nothing in every frame.
+//!
+//! # The contract
+//!
+//! **Device.** Vulkan 1.3 with the features of [`requirements::features`] enabled: `bufferDeviceAddress` and `synchronization2`.
+//! [`requirements::query`] names all that a physical device lacks. No descriptor sets, no 64-bit integers, no subgroup operations, any
+//! subgroup size. The queue needs compute; ownership of buffers among queue families is the caller's affair.
+//!
+//! **Memory.** [`Tracer::build_sizes`] turns a [`Capacity`] into bytes, alignment and usage flags of three regions:
+//!
+//! | region | holds | lives |
+//! |---|---|---|
+//! | grid | header, cells, references, triangles, bricks | as long as rays are traced through it |
+//! | scratch | pairs while they are sorted, counters, dispatch arguments | while a build runs; builds that do not overlap in time may share it |
+//! | report | a [`Report`] | until the host has read it, if it wants to |
+//!
+//! Regions begin at multiples of [`REGION_ALIGNMENT`] of their device address, do not overlap, and may lie in one buffer. Contents need no
+//! initialization and survive nothing but their purpose: a build overwrites all that it later reads.
+//!
+//! **Geometry.** Positions are tightly packed `f32` triples, indices tightly packed `u32` triples ([`Geometry`]). A triangle with a vertex
+//! that is not finite, or with an index beyond the positions, is dropped and counted. Neither buffer is read after the build: the grid
+//! has its own copy of the triangles.
+//!
+//! **Barriers.** The caller puts a memory barrier ([`cmd_barrier`], or one of its own with these masks)
+//! - from whatever wrote the geometry, and from [`Tracer::TRACE`] of the grid's last use, to [`Tracer::BUILD`] before a build;
+//! - from [`Tracer::BUILD`] to [`Tracer::TRACE`] between a build and the traces through its grid;
+//! - from [`Tracer::TRACE`] to whatever reads the hits, and from whatever wrote the rays or an indirect count to [`Tracer::TRACE`];
+//! - between two builds that share a scratch region, and between two traces that share one, from and to the same masks;
+//! - to [`Access::HOST_READ`] before the host reads a report.
+//!
+//! Barriers among the steps of one build or trace are the library's.
+//!
+//! **State.** A recording binds compute pipelines and sets push constants; what was bound before is lost. Descriptor sets, graphics state and
+//! everything else stay. A command buffer may be submitted again after its geometry, rays or counts changed: all numbers are read on
+//! the device. With timestamps, a recording resets the queries that it writes.
+//!
+//! **Overflow.** Pairs beyond the capacity are dropped, never written out of bounds; the report says so and what would have sufficed
+//! ([`Report::pairs_overflowed`], [`Report::needed_pairs`]). Such a grid is sound but misses triangles. A density that asks for more cells than
+//! the capacity is lowered and reported; such a grid is complete.
+//!
+//! **Threads.** A [`Tracer`] is `Send` and `Sync`, all methods take `&self`; a command buffer is recorded by one thread at a time.
+//!
+//! **Destruction.** Drop the tracer after all work recorded with it has ended and before its device is destroyed.
+//!
+//! # Rays and hits
+//!
+//! A [`Ray`]'s direction has any length but zero, `t` counts in its units, and hits lie in the closed interval [`t_min`, `t_max`]. The hit
+//! point is (1 - u - v) a + u b + v c of the triangle's vertices; both windings are hit; a triangle seen exactly edge-on is not. A miss has
+//! triangle [`MISS`] and an infinite `t`. Of hits at equal distance the lowest triangle index wins. A ray with a NaN, with an infinite origin
+//! or direction, or with a direction of zero misses. Components of a direction below 2^-40 of the largest count as zero. A ray that starts
+//! outside of the scene box is traced from its entry into the box; one that starts so far away that its origin's rounding exceeds the
+//! box's padding is traced as the rounded ray. A walk that was given up after its continuations has triangle [`UNFINISHED`]: neither a hit
+//! nor a miss. No ray passes between two triangles that share an edge.
+//!
+//! # In your own shader
+//!
+//! [`GRIDWALK_GLSL`] is the text of one include, without bindings: pass the grid region's address and call `gridwalk_closest_hit`,
+//! `gridwalk_any_hit`, or iterate over candidates. Its head documents the interface.
+//!
+//! # Example
+//!
+//! ```no_run
+//! use gridwalk::{ash, *};
+//! use ash::vk;
+//!
+//! # #[allow(clippy::too_many_arguments)]
+//! unsafe fn record(
+//!     tracer: &Tracer, cmd: vk::CommandBuffer, build: &BuildInfo, rays: Region, hits: Region, trace_scratch: Region,
+//! ) -> Result<()> {
+//!     let device = tracer.device();
+//!     unsafe {
+//!         // After the pass that wrote the vertices:
+//!         cmd_barrier(device, cmd, Access::COMPUTE, Tracer::BUILD);
+//!         tracer.cmd_build(cmd, build)?;
+//!         cmd_barrier(device, cmd, Tracer::BUILD, Tracer::TRACE);
+//!         let trace = TraceInfo {
+//!             rays, hits, count: RayCount::Direct(1_000_000), scratch: trace_scratch, resume: false, counters: None,
+//!         };
+//!         tracer.cmd_closest_hit(cmd, build.grid.address, &trace)
+//!     }
+//! }
+//! ```
 
 mod error;
 pub mod hazard;

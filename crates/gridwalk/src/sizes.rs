@@ -152,6 +152,33 @@ impl ScratchLayout {
     }
 }
 
+/// Name and bytes of every part of the grid and the scratch region, in this order.
+pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64); 18] {
+    let grid = GridLayout::new(capacity);
+    let scratch = ScratchLayout::new(capacity, shape);
+    [
+        ("grid header", grid.header),
+        ("cells", grid.cells),
+        ("references", grid.references),
+        ("triangles", grid.triangles),
+        ("bricks", grid.bricks),
+        ("build state", scratch.state),
+        ("dispatch arguments", scratch.arguments),
+        ("scene bounds", scratch.scene_bounds),
+        ("bounds partials", scratch.bounds_partials),
+        ("offsets", scratch.offsets),
+        ("scan partials", scratch.scan_partials),
+        ("keys a", scratch.keys_a),
+        ("keys b", scratch.keys_b),
+        ("values a", scratch.values_a),
+        ("digit table", scratch.table),
+        ("occupancy partials", scratch.occupancy),
+        ("distances x", scratch.distances_x),
+        ("distances y", scratch.distances_y),
+    ]
+    .map(|(name, part)| (name, part.size))
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TraceLayout {
     pub(crate) state: Part,

@@ -300,6 +300,11 @@ impl Tracer {
         })
     }
 
+    /// Name and bytes of every part of a build's grid and scratch regions: where the memory goes.
+    pub fn memory_parts(&self, capacity: &Capacity) -> [(&'static str, u64); 18] {
+        sizes::parts(capacity, &self.shape)
+    }
+
     /// What the scratch region of a trace needs.
     ///
     /// # Errors
