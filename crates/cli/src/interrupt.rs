@@ -1,4 +1,4 @@
-//! Ctrl-C: the program ends at once with status 130, except in the short time in which a file is put in its place.
+//! Ctrl-C: the program ends at once with status 130; while a file is put in its place, right after that, or at a second Ctrl-C.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -24,7 +24,9 @@ impl Interrupt {
             // Order matters: handlers run in the order in which they were registered, so the note is made before the end.
             let noted = signal_hook::flag::register_usize(signal, Arc::clone(&interrupt.pending), signal as usize);
             let ended = signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&interrupt.at_once));
-            if let Err(error) = noted.and(ended) {
+            // A second signal does not wait: a file may be stuck on a disk that does not answer.
+            let impatient = signal_hook::flag::register(signal, Arc::clone(&interrupt.at_once));
+            if let Err(error) = noted.and(ended).and(impatient) {
                 tracing::debug!("cannot catch signal {signal}: {error}");
             }
         }

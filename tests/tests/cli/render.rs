@@ -178,6 +178,7 @@ fn verbosity() {
     let talkative = gridwalk(folder.path(), words("render two.obj --size 8x8 -v")).expect(0);
     assert!(talkative.stderr.contains("info: wrote two.png"), "{}", talkative.stderr);
     assert!(!talkative.stderr.contains('\x1b'), "no colours where nobody sees them");
+    assert!(!talkative.stderr.contains('\r') && !talkative.stderr.contains("rendering"), "no progress bar either");
     gridwalk(folder.path(), words("render two.obj --size 8x8 -q --log-file log.txt")).expect(0);
     let log = std::fs::read_to_string(folder.path().join("log.txt")).unwrap();
     assert!(log.contains("wrote two.png"), "{log}");

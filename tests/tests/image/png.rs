@@ -110,3 +110,18 @@ fn reads_back_under_limits() {
     assert!(matches!(read(&folder.path().join("none.png"), ReadLimits::default()), Err(Error::Read { .. })));
     assert!(matches!(read(folder.path(), ReadLimits::default()), Err(Error::Read { .. })));
 }
+
+/// One byte at a time: an error or another picture, never a panic and never more memory than allowed.
+#[test]
+fn broken_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.png");
+    let picture = tonemapped(&beauty(9, 5, |x, y| [x as f32 / 9.0, y as f32 / 5.0, 0.3, 1.0]), &PngOptions::default()).unwrap();
+    let good = encode(&picture, &Metadata::new());
+    for at in 0..good.len() {
+        let mut bytes = good.clone();
+        bytes[at] ^= 0x55;
+        std::fs::write(&path, &bytes).unwrap();
+        let _ = read(&path, ReadLimits { bytes: 1 << 20 });
+    }
+}
