@@ -223,6 +223,7 @@ pub fn npz(arrays: &[(&str, Vec<u8>)]) -> Result<Vec<u8>, String> {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used, reason = "a test that fails panics")]
 mod tests {
     use super::{FloatArray, npy, npz, read_f32};
 
