@@ -447,7 +447,7 @@ pub fn trace_plan(query: Query, max_rays: u32, indirect: bool) -> Plan {
     ));
     for turn in 0..=CONTINUATIONS {
         if turn > 0 {
-            plan.barrier(Barrier::ShaderAndIndirect);
+            plan.barrier(Barrier::Shader);
             plan.step(Step::new(&TRACE_CONTINUE_ARGS, Dispatch::Direct([1, 1, 1]), push::TraceContinueArgs { state }));
         }
         plan.barrier(Barrier::ShaderAndIndirect);

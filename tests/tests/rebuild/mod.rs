@@ -1,0 +1,7 @@
+//! Grids that the device built: what must hold of every one of them.
+
+mod again;
+mod hostile;
+mod invariants;
+mod overflow;
+mod plan;

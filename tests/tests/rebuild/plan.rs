@@ -1,0 +1,110 @@
+//! Plans as data: every barrier is needed, and none is missing.
+
+use gridwalk::hazard::{HazardKind, find_hazard, find_hazard_in};
+use gridwalk::plan::{Barrier, BuildInputs, CONTINUATIONS, Dispatch, Item, Plan, Query, build_plan, trace_plan};
+use gridwalk::{Capacity, Shape};
+
+use crate::kernels::{ODD, TINY};
+
+const SHAPES: [Shape; 4] = [Shape::CPU, Shape::GPU, ODD, TINY];
+
+fn builds() -> Vec<(String, Plan)> {
+    let mut plans = Vec::new();
+    for shape in SHAPES {
+        // Every number of digits.
+        for bits in 0..=28 {
+            for (triangle_count, exact) in [(0, false), (1, true), (1_000_000, false)] {
+                let capacity = Capacity { triangles: triangle_count, cells: 1 << bits, pairs: 1_000 };
+                let inputs = BuildInputs { triangle_count, vertex_count: 3, density: 8.0, resolution: None, exact };
+                plans.push((format!("2^{bits} cells, {inputs:?}, {shape:?}"), build_plan(&capacity, &inputs, &shape)));
+            }
+        }
+    }
+    plans
+}
+
+fn traces() -> Vec<(String, Plan)> {
+    let closest = [(false, false), (true, false), (false, true), (true, true)];
+    let queries = closest.map(|(resume, count)| Query::Closest { resume, count }).into_iter().chain([Query::Any]);
+    queries
+        .flat_map(|query| [false, true].map(|indirect| (format!("{query:?}, indirect {indirect}"), trace_plan(query, 1_000, indirect))))
+        .collect()
+}
+
+fn barriers(plan: &Plan) -> impl Iterator<Item = (usize, Barrier)> + '_ {
+    plan.items().iter().enumerate().filter_map(|(at, item)| match item {
+        Item::Barrier(barrier) => Some((at, *barrier)),
+        Item::Step(_) => None,
+    })
+}
+
+fn without(plan: &Plan, at: usize) -> Vec<Item> {
+    plan.items().iter().enumerate().filter(|(index, _)| *index != at).map(|(_, item)| *item).collect()
+}
+
+#[test]
+fn plans_have_no_hazard() {
+    let (builds, traces) = (builds(), traces());
+    for (name, build) in &builds {
+        assert_eq!(find_hazard([build]), None, "{name}");
+    }
+    for (name, trace) in &traces {
+        for (_, build) in &builds[..3] {
+            assert_eq!(find_hazard([build, trace, build]), None, "{name}");
+        }
+    }
+}
+
+#[test]
+fn every_barrier_is_needed() {
+    for (name, plan) in builds().into_iter().chain(traces()) {
+        assert!(barriers(&plan).count() > 3, "{name}");
+        for (at, barrier) in barriers(&plan) {
+            assert!(find_hazard_in(&without(&plan, at)).is_some(), "{name}: the barrier at {at} is idle");
+            if barrier == Barrier::ShaderAndIndirect {
+                let mut items = plan.items().to_vec();
+                items[at] = Item::Barrier(Barrier::Shader);
+                let hazard = find_hazard_in(&items);
+                assert_eq!(hazard.map(|hazard| hazard.kind), Some(HazardKind::StaleArguments), "{name}: the barrier at {at}");
+            }
+        }
+    }
+}
+
+/// The walk sees each kind of hazard, where it is.
+#[test]
+fn hazards_are_named() {
+    let (_, plan) = &builds()[0];
+    let steps: Vec<Item> = plan.items().iter().copied().filter(|item| matches!(item, Item::Step(_))).collect();
+    let hazard = find_hazard_in(&steps).unwrap();
+    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "bounds_spine", HazardKind::ReadAfterWrite));
+    // The same step twice writes twice.
+    let hazard = find_hazard_in(&[steps[0], steps[0]]).unwrap();
+    assert_eq!((hazard.item, hazard.kind), (1, HazardKind::WriteAfterWrite));
+    // Its reader before its writer.
+    let hazard = find_hazard_in(&[steps[1], steps[0]]).unwrap();
+    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "bounds_reduce", HazardKind::WriteAfterRead));
+}
+
+/// Digits of the capacity decide how many passes are recorded; indirect steps take their arguments from the build's.
+#[test]
+fn plans_have_the_passes_of_their_capacity() {
+    for shape in SHAPES {
+        for bits in 0..=28u32 {
+            let capacity = Capacity { triangles: 1, cells: 1 << bits, pairs: 1 };
+            let inputs = BuildInputs { triangle_count: 1, vertex_count: 3, density: 8.0, resolution: None, exact: true };
+            let plan = build_plan(&capacity, &inputs, &shape);
+            let scatters = plan.steps().filter(|step| step.kernel.name == "sort_scatter").count() as u32;
+            // The sentinel is the number of cells itself, which takes a bit more.
+            assert_eq!(scatters, (bits + 1).div_ceil(shape.sort_bits), "2^{bits} cells, {shape:?}");
+            for step in plan.steps() {
+                if let Dispatch::Indirect(buffer, offset) = step.dispatch {
+                    assert_eq!(buffer, gridwalk::plan::Buffer::Arguments);
+                    assert_eq!(offset % 16, 0);
+                }
+            }
+        }
+    }
+    let (_, trace) = &traces()[0];
+    assert_eq!(trace.steps().count() as u32, 2 + 2 * CONTINUATIONS);
+}
