@@ -18,7 +18,7 @@ fn build_to_fit(gpu: &Gpu, mesh: &Mesh, overlap: Overlap, most_pairs: u32) -> Bu
         check(gpu, &built, mesh).unwrap();
         match built.report.needed_pairs() {
             Some(needed) if needed <= most_pairs => capacity.pairs = needed,
-            _ => options.density *= 0.1,
+            _ => options.density *= 0.01,
         }
     }
     panic!("no density fits");

@@ -12,6 +12,14 @@ use gridwalk_core::twin::brick_reduce::brick_reduce;
 use gridwalk_tests::gpu::{Built, Gpu, Mesh};
 use gridwalk_tests::meshes::soup;
 
+macro_rules! require {
+    ($holds:expr, $($text:tt)+) => {
+        if !$holds {
+            return Err(format!($($text)+));
+        }
+    };
+}
+
 pub type Double = [f64; 3];
 
 fn axis_parts(axis: Double, half: Double, v: &[Double; 3]) -> bool {
@@ -63,11 +71,9 @@ pub fn check(gpu: &Gpu, built: &Built, mesh: &Mesh) -> Result<(), String> {
 
 fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], references: &[u32]) -> Result<(), String> {
     let (header, report) = (built.header(), built.report);
-    let fail = |text: String| if text.is_empty() { Ok(()) } else { Err(text) };
-    let require = |holds: bool, text: &str| fail(if holds { String::new() } else { text.to_owned() });
-    require(header.resolution == report.resolution && header.cell_count == report.cells, "the report is not of this grid")?;
-    require(header.resolution.iter().map(|n| u64::from(*n)).product::<u64>() == u64::from(header.cell_count), "the number of cells")?;
-    require(header.cell_count >= 1 && header.cell_count <= built.info.capacity.cells.max(1), "the capacity of cells")?;
+    require!(header.resolution == report.resolution && header.cell_count == report.cells, "the report is not of this grid");
+    require!(header.resolution.iter().map(|n| u64::from(*n)).product::<u64>() == u64::from(header.cell_count), "the number of cells");
+    require!(header.cell_count >= 1 && header.cell_count <= built.info.capacity.cells.max(1), "the capacity of cells");
 
     // Ranges.
     let mut next = 0;
@@ -75,14 +81,14 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
         if *range == [0, 0] {
             continue;
         }
-        require(range[0] == next && range[1] > range[0], &format!("cell {cell} has {range:?} where {next} follows"))?;
+        require!(range[0] == next && range[1] > range[0], "cell {cell} has {range:?} where {next} follows");
         next = range[1];
-        let list = references.get(range[0] as usize..range[1] as usize).ok_or(format!("cell {cell} has {range:?}"))?;
-        require(list.windows(2).all(|pair| pair[0] < pair[1]), &format!("the list of cell {cell} does not ascend"))?;
+        let list = references.get(range[0] as usize..range[1] as usize).ok_or_else(|| format!("cell {cell} has {range:?}"))?;
+        require!(list.windows(2).all(|pair| pair[0] < pair[1]), "the list of cell {cell} does not ascend");
     }
-    require(next == report.pairs, &format!("{next} pairs are listed"))?;
-    require(report.cells_in_use as usize == cells.iter().filter(|range| **range != [0, 0]).count(), "cells in use")?;
-    require(report.longest_list == cells.iter().map(|[begin, end]| end - begin).max().unwrap_or(0), "longest list")?;
+    require!(next == report.pairs, "{next} pairs are listed");
+    require!(report.cells_in_use as usize == cells.iter().filter(|range| **range != [0, 0]).count(), "cells in use");
+    require!(report.longest_list == cells.iter().map(|[begin, end]| end - begin).max().unwrap_or(0), "longest list");
     check_bricks(gpu, built, cells)?;
 
     // Triangles.
@@ -97,9 +103,9 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
         for (corner, found) in found.iter().enumerate() {
             // A device may flush denormals to zero.
             let same = (0..3).all(|i| found[i] == v[corner][i] || (found[i] == 0.0 && !(v[corner][i] * header.inverse_scale).is_normal()));
-            require(same, &format!("triangle {index} is {found:?} where {v:?} is expected"))?;
+            require!(same, "triangle {index} is {found:?} where {v:?} is expected");
         }
-        require((found[0][3] == 1.0) == expected.is_none(), &format!("triangle {index}: mark of a dropped triangle"))?;
+        require!((found[0][3] == 1.0) == expected.is_none(), "triangle {index}: mark of a dropped triangle");
         if expected.is_some() {
             let input = mesh.triangle(index);
             low = input.into_iter().fold(low, gridwalk_core::vector::min);
@@ -107,9 +113,9 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
         }
         triangles.push(expected.map(|_| found.map(|v| [0, 1, 2].map(|i| f64::from(v[i])))));
     }
-    require(dropped == report.dropped && mesh.indices.len() as u32 == report.triangles, "the number of triangles, or of dropped ones")?;
+    require!(dropped == report.dropped && mesh.indices.len() as u32 == report.triangles, "the number of triangles, or of dropped ones");
     if (dropped as usize) < mesh.indices.len() {
-        require(report.box_min == low && report.box_max == high, &format!("the box is {low:?} {high:?}"))?;
+        require!(report.box_min == low && report.box_max == high, "the box is {low:?} {high:?}");
     }
 
     // No cell lists a triangle whose padded box does not touch it.
@@ -119,19 +125,20 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
         let (cell_low, cell_high) = cell_box(&header, cell_of(id as u32, header.resolution));
         for triangle in &references[range[0] as usize..range[1] as usize] {
             let v = triangles.get(*triangle as usize).copied().flatten();
-            let v = v.ok_or(format!("cell {id} lists triangle {triangle}, which is dropped or does not exist"))?;
+            let v = v.ok_or_else(|| format!("cell {id} lists triangle {triangle}, which is dropped or does not exist"))?;
             let (low, high) = triangle_box(&v);
             let touches = (0..3).all(|i| low[i] - reach <= cell_high[i] && high[i] + reach >= cell_low[i]);
-            require(touches, &format!("cell {id} lists triangle {triangle}, which is elsewhere: {v:?}"))?;
+            require!(touches, "cell {id} lists triangle {triangle}, which is elsewhere: {v:?}");
             pairs.push((*triangle, id as u32));
         }
     }
     pairs.sort_unstable();
     if report.pairs_overflowed() {
-        return require(report.pair_total > built.info.capacity.pairs, "an overflow without need");
+        require!(report.pair_total > built.info.capacity.pairs, "an overflow without need");
+        return Ok(());
     }
     let exact = built.info.options.overlap == Overlap::Exact;
-    require(report.pairs == report.pair_total || exact && report.pairs < report.pair_total, "pairs are missing")?;
+    require!(report.pairs == report.pair_total || exact && report.pairs < report.pair_total, "pairs are missing");
 
     // Every cell that a triangle overlaps lists it.
     for (index, v) in triangles.iter().enumerate() {
@@ -145,7 +152,7 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
         });
         let listed = pairs.partition_point(|pair| *pair < (index, 0))..pairs.partition_point(|pair| *pair <= (index, u32::MAX));
         let listed = &pairs[listed];
-        require(!listed.is_empty(), &format!("triangle {index} is in no cell"))?;
+        require!(!listed.is_empty(), "triangle {index} is in no cell");
         for z in range[2].clone() {
             for y in range[1].clone() {
                 for x in range[0].clone() {
@@ -153,7 +160,7 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
                     if overlaps(v, cell_low, cell_high) {
                         let id = cell_id([x, y, z], header.resolution);
                         let found = listed.binary_search(&(index, id)).is_ok();
-                        require(found, &format!("cell {id} ({x}, {y}, {z}) does not list triangle {index}: {v:?}"))?;
+                        require!(found, "cell {id} ({x}, {y}, {z}) does not list triangle {index}: {v:?}");
                     }
                 }
             }
