@@ -208,9 +208,13 @@ const EXAMPLES: usize = 16;
 fn difference(rays: &[Ray], ours: &[Hit], theirs: &[Hit]) -> Difference {
     let mut difference = Difference::default();
     for (index, (ours, theirs)) in ours.iter().zip(theirs).enumerate() {
-        let same = ours.t == theirs.t || (ours.t - theirs.t).abs() <= 1e-4 * ours.t.abs().max(theirs.t.abs()).min(f32::MAX);
-        if same && ours.triangle != UNFINISHED {
-            difference.triangle += u64::from(ours.triangle != theirs.triangle);
+        if ours.triangle == theirs.triangle {
+            difference.distance = difference.distance.max(if ours.is_hit() { (ours.t - theirs.t).abs() } else { 0.0 });
+            continue;
+        }
+        let are_hits = ours.is_hit() && theirs.is_hit();
+        if are_hits && (ours.t - theirs.t).abs() <= 1e-4 * ours.t.abs().max(theirs.t.abs()) {
+            difference.triangle += 1;
             continue;
         }
         let is_nearer = ours.t < theirs.t && ours.triangle != UNFINISHED;
@@ -238,10 +242,10 @@ mod tests {
         let hit = |t: f32, triangle: u32| Hit { t, u: 0.0, v: 0.0, triangle };
         let rays = [Ray { origin: [0.0; 3], t_min: 0.0, direction: [1.0; 3], t_max: 9.0 }; 7];
         let lost = Hit { triangle: UNFINISHED, ..Hit::MISS };
-        let ours = [hit(1.0, 1), hit(1.0, 1), hit(1.0, 1), Hit::MISS, Hit::MISS, lost, hit(2.0, 3)];
-        let theirs = [hit(1.0, 1), hit(1.000_01, 2), hit(1.01, 1), Hit::MISS, hit(3.0, 0), Hit::MISS, Hit::MISS];
+        let ours = [hit(1.25, 1), hit(1.0, 1), hit(1.0, 1), Hit::MISS, Hit::MISS, lost, hit(2.0, 3)];
+        let theirs = [hit(1.0, 1), hit(1.000_01, 2), hit(1.01, 4), Hit::MISS, hit(3.0, 0), Hit::MISS, Hit::MISS];
         let found = difference(&rays, &ours, &theirs);
-        assert_eq!((found.triangle, found.nearer, found.farther), (1, 2, 2));
+        assert_eq!((found.triangle, found.nearer, found.farther, found.distance), (1, 2, 2, 0.25));
         assert_eq!(found.examples.iter().map(|example| example.ray).collect::<Vec<_>>(), [2, 4, 5, 6]);
         assert_eq!(found.examples[1].embree, Some((3.0, 0)));
         assert_eq!(difference(&rays, &ours[..5], &ours[..5]), Difference::default());

@@ -113,7 +113,8 @@ pub struct RayReport {
     pub difference: Option<Difference>,
 }
 
-/// How two rounds of hits differ. Distances are the same if they differ by at most 1e-4 of the greater; a miss is infinitely far.
+/// How two rounds of hits differ. The same triangle is the same hit, since a grazing ray's distance is mostly rounding; of different
+/// triangles, distances are the same if they differ by at most 1e-4 of the greater. A miss is infinitely far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Another triangle at the same distance: neighbours share edges.
@@ -122,6 +123,8 @@ pub struct Difference {
     pub nearer: u64,
     /// We hit something farther than the rival, or gave up.
     pub farther: u64,
+    /// Greatest difference of distance where the triangle is the same, in units of the direction's length.
+    pub distance: f32,
     /// The first of those that are nearer or farther.
     pub examples: Vec<Example>,
 }
