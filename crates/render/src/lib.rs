@@ -1,6 +1,8 @@
 //! Pictures by gridwalk: device, frame loop, shading and image files.
 
+mod camera;
 mod cast;
+mod compact;
 mod context;
 mod device;
 mod error;
@@ -10,6 +12,7 @@ pub mod image;
 pub mod kernels;
 mod layers;
 mod layout;
+mod picture;
 mod pipeline;
 mod push;
 mod queries;

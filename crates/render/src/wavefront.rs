@@ -4,10 +4,13 @@
 //! reach, compact, any hit, add; then compact what reflects into the next bounce's queue. Every step but the compaction is a map.
 
 use crate::{
-    Aov, Buffer, BufferDesc, BufferKind, Context, Crop, Error, Frame, FrameStats, GpuScene, Grid, Layer, LayerData, Layers, Progress,
-    RenderSettings, Result, kernels,
+    Buffer, BufferDesc, BufferKind, Context, Error, Frame, FrameStats, GpuScene, Grid, Progress, RenderSettings, Result,
+    camera::{camera_frame, sample_offset},
+    compact::{Compaction, CompactionInfo, sum_count},
+    kernels,
     layout::{CameraFrame, Film, FirstHitRecord, Path, QueueHeader, Surface},
-    pipeline::{MAP_WORKGROUP, Pipeline, Recorder, Timer, map_groups},
+    picture::Picture,
+    pipeline::{Pipeline, Recorder, Timer, map_groups},
     push,
 };
 use ash::vk;
@@ -25,9 +28,7 @@ pub struct Renderer {
     light_emit: Pipeline,
     light_add: Pipeline,
     reflect_emit: Pipeline,
-    flag_reduce: Pipeline,
-    flag_spine: Pipeline,
-    flag_downsweep: Pipeline,
+    compaction: Compaction,
     masked_closest: Masked,
     masked_any: Masked,
 }
@@ -59,9 +60,6 @@ impl std::fmt::Debug for Renderer {
 
 /// Traces in one submission, each of at most a batch of rays: what keeps a submission short enough for a watchdog.
 const TRACES_PER_SUBMISSION: u32 = 8;
-
-/// Flags that one workgroup of the compaction scans: `FLAG_BLOCK` in `render/shared/flags.glsl`.
-const FLAG_BLOCK: u32 = 2048;
 
 /// [`push::Shade::flags`].
 const SHADE_CAMERA: u32 = 1;
@@ -132,9 +130,7 @@ impl Renderer {
             light_emit: pipeline(&kernels::LIGHT_EMIT)?,
             light_add: pipeline(&kernels::LIGHT_ADD)?,
             reflect_emit: pipeline(&kernels::REFLECT_EMIT)?,
-            flag_reduce: pipeline(&kernels::FLAG_REDUCE)?,
-            flag_spine: pipeline(&kernels::FLAG_SPINE)?,
-            flag_downsweep: pipeline(&kernels::FLAG_DOWNSWEEP)?,
+            compaction: Compaction::new(context)?,
             masked_closest: Masked::new(context, &kernels::MASKED_CLOSEST_HIT)?,
             masked_any: Masked::new(context, &kernels::MASKED_ANY_HIT)?,
         })
@@ -246,7 +242,7 @@ impl<'a> Batch<'a> {
             reflects: buffer("reflection flags", capacity, 4)?,
             shadows: buffer("shadow flags", capacity, 4)?,
             offsets: buffer("queue offsets", capacity, 4)?,
-            sums: buffer("flag sums", capacity.div_ceil(FLAG_BLOCK), 4)?,
+            sums: buffer("flag sums", sum_count(capacity), 4)?,
             shadow_rays: buffer("shadow ray queue", capacity, size_of::<Ray>())?,
             shadow_paths: buffer("shadow path queue", capacity, size_of::<Path>())?,
             occluded: buffer("occluded", capacity, 4)?,
@@ -446,12 +442,15 @@ impl<'a> Batch<'a> {
 
     /// Places of the set flags, and the header of the queue that they make.
     fn compact(&self, recorder: &mut Recorder<'_>, queue: u64, flags: &Buffer, next: u64) {
-        let renderer = self.renderer;
-        let (flags, sums, offsets) = (flags.address(), self.sums.address(), self.offsets.address());
-        let blocks = [self.capacity.div_ceil(FLAG_BLOCK), 1, 1];
-        recorder.dispatch(&renderer.flag_reduce, &push::FlagReduce { queue, flags, sums }, blocks);
-        recorder.dispatch(&renderer.flag_spine, &push::FlagSpine { queue, sums, next }, [1, 1, 1]);
-        recorder.dispatch(&renderer.flag_downsweep, &push::FlagDownsweep { queue, flags, sums, offsets }, blocks);
+        let info = CompactionInfo {
+            capacity: self.capacity,
+            queue,
+            flags: flags.address(),
+            sums: self.sums.address(),
+            offsets: self.offsets.address(),
+            next,
+        };
+        self.renderer.compaction.record(recorder, &info);
     }
 
     fn trace_info(&self, rays: &Buffer, hits: &Buffer, header: u64) -> TraceInfo {
@@ -551,180 +550,3 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 }
-
-/// A picture as it is put together from batches.
-struct Picture {
-    width: u32,
-    height: u32,
-    scale: f32,
-    transparent: bool,
-    beauty: Vec<f32>,
-    layers: Vec<(Aov, LayerData)>,
-}
-
-impl Picture {
-    fn new(crop: Crop, settings: &RenderSettings) -> Picture {
-        let pixels = crop.width as usize * crop.height as usize;
-        let mut aovs = settings.aovs.clone();
-        aovs.sort_unstable();
-        aovs.dedup();
-        let layers = aovs
-            .into_iter()
-            .map(|aov| {
-                let values = pixels * aov.channels().1.len();
-                let data =
-                    if aov == Aov::Id || aov.is_count() { LayerData::Uint(vec![0; values]) } else { LayerData::Float(vec![0.0; values]) };
-                (aov, data)
-            })
-            .collect();
-        Picture {
-            width: crop.width,
-            height: crop.height,
-            scale: 1.0 / settings.spp as f32,
-            transparent: settings.transparent,
-            beauty: vec![0.0; pixels * 4],
-            layers,
-        }
-    }
-
-    fn add_film(&mut self, first: u32, film: &[Film]) {
-        for (place, pixel) in (first..).zip(film) {
-            let at = tiled_pixel(place, self.width, self.height) * 4;
-            let alpha = if self.transparent { pixel.coverage * self.scale } else { 1.0 };
-            let [r, g, b] = pixel.radiance.map(|value| value * self.scale);
-            if let Some(target) = self.beauty.get_mut(at..at + 4) {
-                target.copy_from_slice(&[r, g, b, alpha]);
-            }
-        }
-    }
-
-    fn add_records(&mut self, first: u32, records: &[FirstHitRecord], counters: &[[u32; 4]]) {
-        let (width, height) = (self.width, self.height);
-        for (aov, data) in &mut self.layers {
-            let channels = aov.channels().1.len();
-            for (i, record) in records.iter().enumerate() {
-                let at = tiled_pixel(first + i as u32, width, height) * channels;
-                let counts = counters.get(i).copied().unwrap_or_default();
-                let uv = [record.u, record.v];
-                let ids = [record.primitive, record.mesh, record.material];
-                match data {
-                    LayerData::Float(values) => {
-                        let source: &[f32] = match aov {
-                            Aov::Depth => std::slice::from_ref(&record.distance),
-                            Aov::Normal => &record.normal,
-                            Aov::GeometricNormal => &record.geometric_normal,
-                            Aov::Position => &record.position,
-                            Aov::Albedo => &record.albedo,
-                            _ => &uv,
-                        };
-                        if let Some(target) = values.get_mut(at..at + channels) {
-                            target.copy_from_slice(source);
-                        }
-                    }
-                    LayerData::Uint(values) => {
-                        let source: &[u32] = match aov {
-                            Aov::Steps => &counts[..1],
-                            Aov::Tests => &counts[1..2],
-                            Aov::Cells => &counts[2..3],
-                            _ => &ids,
-                        };
-                        if let Some(target) = values.get_mut(at..at + channels) {
-                            target.copy_from_slice(source);
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    fn finish(self) -> Result<Layers> {
-        let mut layers = Layers::new(self.width, self.height);
-        let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
-        layers.push(Layer {
-            name: "beauty".to_owned(),
-            prefix: String::new(),
-            channels: names(&["R", "G", "B", "A"]),
-            data: LayerData::Float(self.beauty),
-        })?;
-        for (aov, data) in self.layers {
-            let (prefix, channels) = aov.channels();
-            layers.push(Layer { name: aov.layer().to_owned(), prefix: prefix.to_owned(), channels: names(channels), data })?;
-        }
-        Ok(layers)
-    }
-}
-
-/// Index of the pixel at a place in the order of tiles: the host's twin of `tiled_pixel` in `camera_rays`.
-fn tiled_pixel(place: u32, width: u32, height: u32) -> usize {
-    const TILE: u32 = 8;
-    let band = place / (TILE * width);
-    let place = place - band * TILE * width;
-    let rows = TILE.min(height - band * TILE);
-    let column = place / (TILE * rows);
-    let place = place - column * TILE * rows;
-    let columns = TILE.min(width - column * TILE);
-    let (x, y) = (column * TILE + place % columns, band * TILE + place / columns);
-    y as usize * width as usize + x as usize
-}
-
-/// Where in the pixel a sample goes through: a Hammersley set, so that every row, every column and every power-of-two block of strata
-/// holds its share of the samples. A single sample goes through the middle.
-fn sample_offset(sample: u32, count: u32) -> [f32; 2] {
-    let half = 0.5 / count as f32;
-    let reversed = sample.reverse_bits() as f32 / 4_294_967_296.0;
-    let below_one = 1.0 - f32::EPSILON;
-    [(sample as f32 / count as f32 + half).min(below_one), (reversed + half).min(below_one)]
-}
-
-fn camera_frame(camera: &Camera, settings: &RenderSettings, crop: Crop) -> Result<CameraFrame> {
-    let bad = |value: String, expected| Error::Setting { setting: "camera", value, expected };
-    let wide = |v: [f32; 3]| v.map(f64::from);
-    let sub = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let cross = |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let unit = |v: [f64; 3]| {
-        let largest = v.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let v = v.map(|value| value / largest);
-        let length = v.iter().map(|value| value * value).sum::<f64>().sqrt();
-        (length.is_finite() && length > 0.0).then(|| v.map(|value| value / length))
-    };
-    let direction = sub(wide(camera.target), wide(camera.eye));
-    let Some(forward) = unit(direction) else {
-        return Err(bad(format!("eye {:?}, target {:?}", camera.eye, camera.target), "an eye and a target that differ, of finite numbers"));
-    };
-    // Looking straight up or down leaves the roll open: any will do.
-    let sideways = |up: [f64; 3]| {
-        unit(up).and_then(|up| {
-            unit(cross(forward, up)).filter(|_| {
-                let along: f64 = (0..3).map(|i| forward[i] * up[i]).sum();
-                along.abs() < 1.0 - 1e-12
-            })
-        })
-    };
-    let Some(right) = sideways(wide(camera.up)).or_else(|| sideways([0.0, 0.0, 1.0])).or_else(|| sideways([0.0, 1.0, 0.0])) else {
-        return Err(bad(format!("up {:?}", camera.up), "finite numbers"));
-    };
-    let up = cross(right, forward);
-    let half_height = match camera.orthographic_height {
-        Some(height) if height > 0.0 && height.is_finite() => f64::from(height) * 0.5,
-        Some(height) => return Err(bad(format!("orthographic height {height}"), "a number above 0")),
-        None if camera.vertical_fov_degrees > 0.0 && camera.vertical_fov_degrees < 180.0 => {
-            (f64::from(camera.vertical_fov_degrees).to_radians() * 0.5).tan()
-        }
-        None => return Err(bad(format!("field of view {}", camera.vertical_fov_degrees), "degrees above 0 and below 180")),
-    };
-    let half_width = half_height * f64::from(settings.width) / f64::from(settings.height);
-    let narrow = |v: [f64; 3], factor: f64| v.map(|value| (value * factor) as f32);
-    Ok(CameraFrame {
-        eye: camera.eye,
-        is_orthographic: u32::from(camera.orthographic_height.is_some()),
-        forward: narrow(forward, 1.0),
-        right: narrow(right, half_width),
-        up: narrow(up, half_height),
-        size: [settings.width, settings.height],
-        crop_origin: [crop.x, crop.y],
-        crop_size: [crop.width, crop.height],
-        ..CameraFrame::default()
-    })
-}
-
-const _: () = assert!(MAP_WORKGROUP == 64);

@@ -57,7 +57,7 @@ fn what_is_written_is_read_back() {
     let data: Vec<u32> = (0..100_000).map(|i: u32| i.wrapping_mul(2_654_435_761)).collect();
     for kind in [BufferKind::Device, BufferKind::Upload, BufferKind::Readback] {
         let buffer = context().buffer(&BufferDesc { name: "data", size: 400_000, kind, dedicated: kind == BufferKind::Device }).unwrap();
-        assert!(buffer.address() % 64 == 0 && buffer.address() != 0);
+        assert!(buffer.address().is_multiple_of(64) && buffer.address() != 0);
         buffer.write(0, &data).unwrap();
         assert_eq!(buffer.read::<u32>(0, data.len()).unwrap(), data, "{kind:?}");
         assert_eq!(buffer.read::<u32>(40, 5).unwrap(), data[10..15]);

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use gridwalk_render::image::{Metadata, PngOptions, Rgb8, Tonemap, encode_png, tonemapped};
-use gridwalk_scene::{LoadOptions, load};
+use gridwalk_scene::{Camera, LoadOptions, load};
 
-use super::{RenderSettings, render, size};
+use super::{RenderSettings, render, size, with_all_layers};
 
 fn tests() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -107,6 +107,32 @@ fn masks() {
 #[test]
 fn flat() {
     check("flat");
+}
+
+/// Sponza from inside, where `GRIDWALK_SPONZA` names `sponza.obj`: nearly every ray meets something, masks and bump maps included.
+#[test]
+fn sponza_from_inside() {
+    let Some(path) = std::env::var_os("GRIDWALK_SPONZA") else {
+        eprintln!("skipped: GRIDWALK_SPONZA does not name sponza.obj");
+        return;
+    };
+    let scene = load(Path::new(&path), &LoadOptions::default()).unwrap();
+    let camera = Camera {
+        eye: [-800.0, 180.0, 0.0],
+        target: [800.0, 350.0, 0.0],
+        up: [0.0, 1.0, 0.0],
+        vertical_fov_degrees: 65.0,
+        orthographic_height: None,
+    };
+    let frame = render(&scene, &camera, &with_all_layers(160, 100));
+    let rgb = tonemapped(&frame.layers, &PngOptions { exposure: 1.0, tonemap: Tonemap::None, alpha: false }).unwrap();
+    let evidence = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("sponza_from_inside.png");
+    write(&evidence, &rgb);
+    assert_eq!(rgb.not_finite, 0);
+    let materials = frame.layers.get("id").unwrap().uints().unwrap();
+    let seen = materials.chunks_exact(3).filter(|ids| ids[0] != u32::MAX).count();
+    let kinds: std::collections::BTreeSet<u32> = materials.chunks_exact(3).map(|ids| ids[2]).collect();
+    assert!(seen > 15_000 && kinds.len() > 10, "{seen} of 16000 pixels, {} materials: look at {}", kinds.len(), evidence.display());
 }
 
 /// Negative controls: what a comparison must not let pass.

@@ -1,6 +1,7 @@
 //! Pictures: the device behind them, what the shading promises, and the blessed ones.
 
 mod context;
+mod grids;
 mod images;
 mod light;
 mod masks;
