@@ -4,6 +4,7 @@
 mod cli;
 mod image;
 mod kernels;
+mod rebuild;
 mod render;
 mod repository;
 mod scene;
