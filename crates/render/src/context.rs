@@ -200,6 +200,11 @@ impl Context {
         self.shared.candidate.handle
     }
 
+    /// `VK_EXT_debug_utils`, where the instance has it.
+    pub fn debug_utils(&self) -> Option<&ext::debug_utils::Device> {
+        self.shared.debug.as_ref()
+    }
+
     /// A pipeline cache for all pipelines of the context.
     pub fn pipeline_cache(&self) -> vk::PipelineCache {
         self.shared.pipeline_cache
@@ -319,6 +324,21 @@ impl Context {
     pub fn submit<R>(&self, label: &str, record: impl FnOnce(vk::CommandBuffer) -> Result<R>) -> Result<R> {
         let commands = lock(&self.shared.commands);
         self.shared.submit(&commands, label, record)
+    }
+
+    /// Records commands under a name that debuggers and validation messages show.
+    pub(crate) fn label<R>(&self, cmd: vk::CommandBuffer, name: &str, record: impl FnOnce() -> R) -> R {
+        let labelled = self.shared.debug.as_ref().zip(CString::new(name).ok());
+        if let Some((debug, name)) = &labelled {
+            // SAFETY: the command buffer is recording (the caller is within `submit`), and the instance enables debug_utils.
+            unsafe { debug.cmd_begin_debug_utils_label(cmd, &vk::DebugUtilsLabelEXT::default().label_name(name)) };
+        }
+        let result = record();
+        if let Some((debug, _)) = &labelled {
+            // SAFETY: as above; the label was begun in this command buffer.
+            unsafe { debug.cmd_end_debug_utils_label(cmd) };
+        }
+        result
     }
 
     /// Destroys device objects of the caller, unless the device may still be using them.
@@ -653,5 +673,107 @@ impl Drop for Buffer {
             // The allocator refuses only what it did not allocate.
             let _ = allocator.free(allocation);
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that fails panics")]
+mod tests {
+    use super::*;
+
+    fn context() -> Context {
+        Context::new(&ContextDesc { validation: std::env::var("GRIDWALK_VALIDATE").as_deref() != Ok("0"), ..ContextDesc::default() })
+            .unwrap()
+    }
+
+    fn refuses(context: &Context, buffer: &Buffer) {
+        let desc = BufferDesc { name: "after", size: 16, kind: BufferKind::Device, dedicated: false };
+        assert!(matches!(context.buffer(&desc), Err(Error::DeviceLost)));
+        assert!(matches!(context.submit("after", |_| Ok(())), Err(Error::DeviceLost)));
+        assert!(matches!(buffer.write(0, &[1_u32]), Err(Error::DeviceLost)));
+        assert!(matches!(buffer.read::<u32>(0, 1), Err(Error::DeviceLost)));
+    }
+
+    /// As after VK_ERROR_DEVICE_LOST: every call says so at once, and all is freed.
+    #[test]
+    fn after_a_loss_every_call_says_so() {
+        let context = context();
+        let buffer = context.upload("before", &[1_u32, 2, 3, 4]).unwrap();
+        context.shared.lost.store(true, Ordering::Release);
+        refuses(&context, &buffer);
+        drop(buffer);
+        assert_eq!(context.allocated_bytes(), 0);
+        assert_eq!(context.take_validation_messages(), Vec::<String>::new());
+    }
+
+    /// As after a submission that does not come back: nothing is destroyed under it.
+    #[test]
+    fn after_a_time_out_nothing_is_freed() {
+        let context = context();
+        let buffer = context.upload("in use", &[1_u32, 2, 3, 4]).unwrap();
+        context.shared.lost.store(true, Ordering::Release);
+        context.shared.abandoned.store(true, Ordering::Release);
+        refuses(&context, &buffer);
+        let shared = Arc::downgrade(&context.shared);
+        let raw = buffer.raw();
+        drop(buffer);
+        // Still a buffer of the device: the validation layer would complain of a destroyed one.
+        let mut requirements = vk::MemoryRequirements2::default();
+        let info = vk::BufferMemoryRequirementsInfo2::default().buffer(raw);
+        // SAFETY: the buffer was given up, not destroyed.
+        unsafe { context.device().get_buffer_memory_requirements2(&info, &mut requirements) };
+        assert!(requirements.memory_requirements.size >= 16);
+        assert_eq!(context.take_validation_messages(), Vec::<String>::new());
+        drop(context);
+        assert!(shared.upgrade().is_none());
+    }
+
+    #[test]
+    fn an_error_while_recording_leaves_the_context_usable() {
+        let context = context();
+        let failed = context.submit("nothing", |_| Err::<(), _>(Error::Interrupted));
+        assert!(matches!(failed, Err(Error::Interrupted)));
+        let buffer = context.upload("after", &[7_u32]).unwrap();
+        context
+            .submit("fill", |cmd| {
+                // SAFETY: the buffer lives until the submission was waited for.
+                unsafe { context.device().cmd_fill_buffer(cmd, buffer.raw(), 0, vk::WHOLE_SIZE, 9) };
+                Ok(())
+            })
+            .unwrap();
+        assert_eq!(buffer.read::<u32>(0, 1).unwrap(), [9]);
+        assert_eq!(context.take_validation_messages(), Vec::<String>::new());
+    }
+
+    /// The negative control of all "no message" above and in the other tests.
+    #[test]
+    fn the_validation_layer_is_heard() {
+        let context = Context::new(&ContextDesc { validation: true, ..ContextDesc::default() }).unwrap();
+        let buffer = context.upload("small", &[0_u32; 4]).unwrap();
+        context
+            .submit("a fill that is not aligned", |cmd| {
+                // SAFETY: the layer reports the offset that is no multiple of 4; the driver rounds it down, within the buffer.
+                unsafe { context.device().cmd_fill_buffer(cmd, buffer.raw(), 2, 4, 0) };
+                Ok(())
+            })
+            .unwrap();
+        let messages = context.take_validation_messages();
+        assert!(messages.iter().any(|message| message.contains("vkCmdFillBuffer")), "{messages:?}");
+        assert_eq!(context.take_validation_messages(), Vec::<String>::new());
+        // A hazard between two copies: synchronization validation.
+        let (a, b) = (context.upload("a", &[0_u32; 64]).unwrap(), context.upload("b", &[0_u32; 64]).unwrap());
+        context
+            .submit("two copies without a barrier", |cmd| {
+                let region = [vk::BufferCopy { src_offset: 0, dst_offset: 0, size: 256 }];
+                // SAFETY: both buffers live and hold the region; the missing barrier is what is tested.
+                unsafe {
+                    context.device().cmd_copy_buffer(cmd, a.raw(), b.raw(), &region);
+                    context.device().cmd_copy_buffer(cmd, b.raw(), a.raw(), &region);
+                }
+                Ok(())
+            })
+            .unwrap();
+        let messages = context.take_validation_messages();
+        assert!(messages.iter().any(|message| message.contains("SYNC-HAZARD")), "{messages:?}");
     }
 }

@@ -159,7 +159,7 @@ impl<'a> Recorder<'a> {
             }
         };
         stamp(query);
-        let result = record(self.cmd);
+        let result = self.context.label(self.cmd, name, || record(self.cmd));
         let barrier = vk::MemoryBarrier2::default()
             .src_stage_mask(STAGES)
             .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
