@@ -41,8 +41,8 @@ impl Mesh {
 
 /// The device of the tests. Validation is on unless `GRIDWALK_VALIDATE=0`; each message fails the test that asks next.
 pub struct Gpu {
-    pub context: Context,
     pub tracer: Tracer,
+    pub context: Context,
 }
 
 /// A word that no test writes.
@@ -165,8 +165,9 @@ impl Gpu {
             device: context.device(),
             pipeline_cache: vk::PipelineCache::null(),
             shape,
+            debug_utils: context.debug_utils(),
         };
-        // SAFETY: the handles are of each other, and the context is dropped after the tracer, being declared before it... see Drop.
+        // SAFETY: the handles are of each other, and the context, declared after the tracer, is dropped after it.
         let tracer = unsafe { Tracer::new(&desc) }.unwrap();
         Gpu { context, tracer }
     }

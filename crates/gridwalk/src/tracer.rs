@@ -1,5 +1,7 @@
 //! The library's face: sizes, and recording of builds and traces.
 
+use std::ffi::CString;
+
 use ash::vk;
 use gridwalk_core::kernel::Kernel;
 
@@ -25,6 +27,8 @@ pub struct DeviceDesc<'a> {
     pub pipeline_cache: vk::PipelineCache,
     /// How kernels are cut; `None` chooses by the kind of device.
     pub shape: Option<Shape>,
+    /// `VK_EXT_debug_utils` of the device, if enabled: names the pipelines and labels every step in the command buffer.
+    pub debug_utils: Option<&'a ash::ext::debug_utils::Device>,
 }
 
 /// A piece of a buffer of the caller's.
@@ -167,6 +171,7 @@ pub struct TraceInfo {
 
 struct Variant {
     kernel: &'static Kernel,
+    name: CString,
     variant: u32,
     pipeline: vk::Pipeline,
 }
@@ -181,6 +186,7 @@ pub struct Tracer {
     variants: Vec<Variant>,
     shape: Shape,
     max_buffer_size: u64,
+    debug_utils: Option<ash::ext::debug_utils::Device>,
 }
 
 /// Boolean constants of a kernel that differ between its launches, in order of the bits of a step's variant, and the variants in use.
@@ -220,7 +226,14 @@ impl Tracer {
         let layout_info = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(std::slice::from_ref(&range));
         // SAFETY: the caller's contract.
         let layout = unsafe { device.create_pipeline_layout(&layout_info, None) }.map_err(Error::vulkan("vkCreatePipelineLayout"))?;
-        let mut tracer = Tracer { device, layout, variants: Vec::new(), shape, max_buffer_size: found.max_buffer_size };
+        let mut tracer = Tracer {
+            device,
+            layout,
+            variants: Vec::new(),
+            shape,
+            max_buffer_size: found.max_buffer_size,
+            debug_utils: desc.debug_utils.cloned(),
+        };
         for &kernel in ALL {
             // SAFETY: the caller's contract.
             unsafe { tracer.create_variants(kernel, desc.pipeline_cache)? };
@@ -259,7 +272,17 @@ impl Tracer {
             let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
             // SAFETY: as above.
             match unsafe { self.device.create_compute_pipelines(cache, &[info], None) } {
-                Ok(pipelines) => self.variants.extend(pipelines.into_iter().map(|pipeline| Variant { kernel, variant, pipeline })),
+                Ok(pipelines) => {
+                    let name = CString::new(kernel.name).unwrap_or_default();
+                    for pipeline in pipelines {
+                        self.variants.push(Variant { kernel, name: name.clone(), variant, pipeline });
+                        if let Some(debug) = &self.debug_utils {
+                            let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(pipeline).object_name(&name);
+                            // SAFETY: the pipeline is of the device. A name that cannot be set is not missed.
+                            let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+                        }
+                    }
+                }
                 Err((_, error)) => {
                     result = Err(Error::vulkan("vkCreateComputePipelines")(error));
                     break;
@@ -425,19 +448,19 @@ impl Tracer {
     /// The addresses in `push` are those of memory that the kernel may access; otherwise as for [`Tracer::cmd_build`].
     #[doc(hidden)]
     pub unsafe fn cmd_kernel(&self, cmd: vk::CommandBuffer, kernel: &'static Kernel, variant: u32, push: &[u8], groups: [u32; 3]) {
-        let Some(pipeline) = self.pipeline(kernel, variant) else { return };
+        let Some(Variant { pipeline, .. }) = self.variant(kernel, variant) else { return };
         // SAFETY: the caller's contract.
         unsafe {
-            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline);
+            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, *pipeline);
             self.device.cmd_push_constants(cmd, self.layout, vk::ShaderStageFlags::COMPUTE, 0, push);
             self.device.cmd_dispatch(cmd, groups[0], groups[1], groups[2]);
         }
     }
 
-    fn pipeline(&self, kernel: &'static Kernel, variant: u32) -> Option<vk::Pipeline> {
+    fn variant(&self, kernel: &'static Kernel, variant: u32) -> Option<&Variant> {
         let found = self.variants.iter().find(|candidate| std::ptr::eq(candidate.kernel, kernel) && candidate.variant == variant);
         debug_assert!(found.is_some(), "no pipeline of {} {variant}", kernel.name);
-        found.map(|variant| variant.pipeline)
+        found
     }
 
     /// Records a search for the closest hit of each ray, in the grid at `grid`, the address of the region it was built in.
@@ -601,11 +624,14 @@ impl Tracer {
     /// # Safety
     /// As for [`Tracer::record`].
     unsafe fn record_step(&self, cmd: vk::CommandBuffer, step: &Step, region: impl Fn(Buffer) -> Region) {
-        let Some(pipeline) = self.pipeline(step.kernel, step.variant) else { return };
+        let Some(variant) = self.variant(step.kernel, step.variant) else { return };
         let push = step.resolve(|buffer| region(buffer).address);
         // SAFETY: the pipeline lives as long as the tracer; the addresses are those of regions that were checked.
         unsafe {
-            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline);
+            if let Some(debug) = &self.debug_utils {
+                debug.cmd_begin_debug_utils_label(cmd, &vk::DebugUtilsLabelEXT::default().label_name(&variant.name));
+            }
+            self.device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, variant.pipeline);
             self.device.cmd_push_constants(cmd, self.layout, vk::ShaderStageFlags::COMPUTE, 0, &push);
             match step.dispatch {
                 Dispatch::Direct([x, y, z]) => self.device.cmd_dispatch(cmd, x, y, z),
@@ -613,6 +639,9 @@ impl Tracer {
                     let arguments = region(buffer);
                     self.device.cmd_dispatch_indirect(cmd, arguments.buffer, arguments.offset + offset);
                 }
+            }
+            if let Some(debug) = &self.debug_utils {
+                debug.cmd_end_debug_utils_label(cmd);
             }
         }
     }

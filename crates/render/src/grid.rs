@@ -109,6 +109,7 @@ impl GridBuilder {
             device: context.device(),
             pipeline_cache: context.pipeline_cache(),
             shape: None,
+            debug_utils: context.debug_utils(),
         };
         // SAFETY: the handles belong to one living context, which has the required features enabled; the engine keeps it alive beyond the
         // tracer; every submission is waited for before anything is dropped.
