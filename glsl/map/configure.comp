@@ -63,6 +63,9 @@ uvec3 resolution_for(vec3 extent, vec3 limit, float target) {
     return uvec3(min(max(floor(relative * low), vec3(1.0)), limit));
 }
 
+// Two axes have at most 2^24 cells together, so nothing overflows.
+bool fits(uvec3 resolution, uint capacity) { return resolution.x * resolution.y <= capacity / resolution.z; }
+
 // The least size, from extent / count upwards, whose last boundary reaches `high`.
 float cell_size_for(float low, float high, float count) {
     float size = (high - low) / count;
@@ -98,22 +101,27 @@ void main() {
     if (!empty) {
         float triangles_in_use = float(triangle_count - bounds.dropped);
         float wanted = max(triangles_in_use * density, 1.0);
-        // Floats below 2^28 that are rounded up could exceed the capacity by a few cells.
-        float capacity = floor(float(cell_capacity) * 0.999999);
+        float capacity = max(float(cell_capacity), 1.0);
         if (fixed_x != 0u) {
             resolution = min(uvec3(fixed_x, fixed_y, fixed_z), uvec3(limit));
-            vec3 size = vec3(resolution);
-            if (size.x * size.y * size.z > capacity) {
+            if (!fits(resolution, cell_capacity)) {
                 overflow |= OVERFLOW_CELLS;
-                resolution = resolution_for(extent, limit, max(capacity, 1.0));
+                resolution = resolution_for(extent, limit, capacity);
             }
         } else {
             if (wanted > capacity) {
                 overflow |= OVERFLOW_CELLS;
-                wanted = max(capacity, 1.0);
+                wanted = capacity;
                 used_density = wanted / triangles_in_use;
             }
             resolution = resolution_for(extent, limit, wanted);
+        }
+        // Beyond 2^24 cells the floats above may be off by a few; one slice less is at least 4,096 cells less.
+        if (!fits(resolution, cell_capacity)) {
+            uint longest = max(resolution.x, max(resolution.y, resolution.z));
+            bvec3 is_longest = equal(resolution, uvec3(longest));
+            resolution -= is_longest.x ? uvec3(1u, 0u, 0u) : (is_longest.y ? uvec3(0u, 1u, 0u) : uvec3(0u, 0u, 1u));
+            resolution = max(resolution, uvec3(1u));
         }
     }
     uint cell_count = resolution.x * resolution.y * resolution.z;

@@ -316,7 +316,7 @@ fn geometry(scene: &GpuScene) -> Geometry {
     }
 }
 
-/// Cells that Equation 3-1 asks for, with room for its rounding along each axis; a build lowers the density to what is there.
+/// Cells that Equation 3-1 asks for; the build rounds down along each axis.
 pub(crate) fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<u32> {
     let cells = match settings.resolution {
         Some(resolution) => {
@@ -328,18 +328,15 @@ pub(crate) fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<
                     expected: "at most 268,435,456 cells in all",
                 });
             }
-            // The build keeps a millionth of the capacity free, against floats that are rounded up.
-            cells + cells / 500_000 + 2
+            cells
         }
         None => {
             if !(settings.density > 0.0 && settings.density.is_finite()) {
                 return Err(Error::Setting { setting: "density", value: settings.density.to_string(), expected: "a number above 0" });
             }
-            (f64::from(triangles) * f64::from(settings.density) * CELL_ROOM) as u64 + 64
+            (f64::from(triangles) * f64::from(settings.density)).ceil() as u64 + 1
         }
     };
     Ok(u32::try_from(cells).unwrap_or(u32::MAX).min(MAX_CELLS))
 }
 
-/// Room for a resolution that rounds to more cells than the density says.
-const CELL_ROOM: f64 = 1.25;

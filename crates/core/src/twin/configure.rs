@@ -77,6 +77,11 @@ fn padded_box(info: &Configure, scene: &Bounds) -> (Bounds, i32, f32) {
     (Bounds { low, high, ..*scene }, exponent, pad)
 }
 
+/// Whether a capacity has room for all cells of a resolution. Two axes have at most 2^24 cells together, so nothing overflows.
+pub fn fits(resolution: [u32; 3], capacity: u32) -> bool {
+    resolution[0] * resolution[1] <= capacity / resolution[2]
+}
+
 /// The grid's head but for its addresses, the density that was used, and whether the cells did not fit.
 pub fn configure_header(info: &Configure, scene: &Bounds, addresses: [[u32; 2]; 4]) -> (GridHeader, f32, u32) {
     let (padded, exponent, pad) = padded_box(info, scene);
@@ -87,22 +92,28 @@ pub fn configure_header(info: &Configure, scene: &Bounds, addresses: [[u32; 2]; 
     let mut overflow = 0;
     if scene.dropped != info.triangle_count {
         let triangles = (info.triangle_count - scene.dropped) as f32;
-        let capacity = (info.cell_capacity as f32 * 0.999_999).floor();
+        let capacity = max_f32(info.cell_capacity as f32, 1.0);
         if info.fixed[0] != 0 {
             resolution = std::array::from_fn(|axis| info.fixed[axis].min(limit[axis] as u32));
-            let [x, y, z] = resolution.map(|n| n as f32);
-            if x * y * z > capacity {
+            if !fits(resolution, info.cell_capacity) {
                 overflow = OVERFLOW_CELLS;
-                resolution = resolution_for(extent, limit, max_f32(capacity, 1.0));
+                resolution = resolution_for(extent, limit, capacity);
             }
         } else {
             let mut wanted = max_f32(triangles * info.density, 1.0);
             if wanted > capacity {
                 overflow = OVERFLOW_CELLS;
-                wanted = max_f32(capacity, 1.0);
+                wanted = capacity;
                 density = wanted / triangles;
             }
             resolution = resolution_for(extent, limit, wanted);
+        }
+        // Beyond 2^24 cells the floats above may be off by a few; one slice less is at least 4,096 cells less.
+        if !fits(resolution, info.cell_capacity) {
+            let longest = resolution[0].max(resolution[1]).max(resolution[2]);
+            if let Some(axis) = resolution.iter().position(|n| *n == longest) {
+                resolution[axis] = (resolution[axis] - 1).max(1);
+            }
         }
     }
     let cell_size: Vec3 = std::array::from_fn(|axis| cell_size_for(padded.low[axis], padded.high[axis], resolution[axis] as f32));
