@@ -231,6 +231,17 @@ impl Gpu {
         self.check_validation();
     }
 
+    /// Why a build is refused.
+    pub fn refused(&self, info: &BuildInfo) -> gridwalk::Error {
+        let mut error = None;
+        self.submit(|cmd| {
+            // SAFETY: the memory of `info` outlives the submission; what is refused records nothing.
+            error = unsafe { self.tracer.cmd_build(cmd, info) }.err();
+        });
+        self.check_validation();
+        error.unwrap_or_else(|| panic!("not refused: {info:?}"))
+    }
+
     /// Records a build once and submits it several times, with `between` before each but the first.
     pub fn submit_again(&self, built: &mut Built, times: usize, mut between: impl FnMut(&mut Built, usize)) {
         let device = self.context.device();

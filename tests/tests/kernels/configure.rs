@@ -107,10 +107,10 @@ fn configure_random_boxes() {
         let unit = 10f32.powf(random.range(-20.0, 20.0));
         let low: [f32; 3] = std::array::from_fn(|_| random.range(-1.0, 1.0) * unit);
         let high = low.map(|low| low + if random.below(6) == 0 { 0.0 } else { unit * 10f32.powf(random.range(-7.0, 1.0)) });
-        let magnitude = 1 + random.below(24);
+        let [magnitude, room] = [1 + random.below(24), random.below(29)];
         let info = Configure {
             triangle_count: 1 + random.below(1 << magnitude),
-            cell_capacity: 1 << random.below(29),
+            cell_capacity: 1 + random.below(1 << room),
             density: 10f32.powf(random.range(-3.0, 3.0)),
             fixed: if random.below(4) == 0 { [1 + random.below(5000), 1 + random.below(50), 1 + random.below(500)] } else { [0; 3] },
             exact: random.below(2) == 0,
@@ -150,6 +150,23 @@ fn configure_special_boxes() {
         assert!(lowered.cell_count > 1 << 19);
         assert_eq!(lowered.scale, 1.0);
         assert_eq!(lowered.pad, PAD);
+    }
+}
+
+/// A fixed resolution may fill its capacity to the last cell, and may not exceed it by one.
+#[test]
+fn configure_counts_cells_exactly() {
+    let gpu = Gpu::shared();
+    let unit = scene([-1.0; 3], [1.0; 3]);
+    for fixed in [[1, 1, 1], [3, 5, 7], [129, 1, 127], [255, 257, 4_095], [643, 645, 647]] {
+        let cells: u32 = fixed.iter().product();
+        let full = check(gpu, Configure { fixed, cell_capacity: cells, ..INFO }, unit, "full");
+        assert_eq!(full.resolution, fixed);
+        if cells > 1 {
+            let info = Configure { fixed, cell_capacity: cells - 1, ..INFO };
+            assert!(check(gpu, info, unit, "one cell short").cell_count < cells);
+            assert_eq!(configure_header(&info, &unit, [[0; 2]; 4]).2, OVERFLOW_CELLS);
+        }
     }
 }
 

@@ -11,6 +11,7 @@ use gridwalk_core::twin::brick_distance_z::brick_distance_z;
 use gridwalk_core::twin::brick_reduce::brick_reduce;
 use gridwalk_tests::gpu::{Built, Gpu, Mesh};
 use gridwalk_tests::meshes::soup;
+use gridwalk_tests::random::Random;
 
 macro_rules! require {
     ($holds:expr, $($text:tt)+) => {
@@ -146,7 +147,8 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
     let exact = built.info.options.overlap == Overlap::Exact;
     require!(report.pairs == report.pair_total || exact && report.pairs < report.pair_total, "pairs are missing");
 
-    // Every cell that a triangle overlaps lists it.
+    // Every cell that a triangle overlaps lists it, and so it must for a triangle up to half a padding away.
+    let margin = 0.5 * f64::from(header.pad);
     for (index, v) in triangles.iter().enumerate() {
         let Some(v) = v else { continue };
         let (low, high) = triangle_box(v);
@@ -154,7 +156,7 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
         let range: [std::ops::RangeInclusive<u32>; 3] = std::array::from_fn(|i| {
             let place = |x: f64| ((x - f64::from(header.box_min[i])) / f64::from(header.cell_size[i])).floor();
             let clamp = |n: f64| n.clamp(0.0, f64::from(header.resolution[i] - 1)) as u32;
-            clamp(place(low[i]))..=clamp(place(high[i]))
+            clamp(place(low[i] - margin))..=clamp(place(high[i] + margin))
         });
         let listed = pairs.partition_point(|pair| *pair < (index, 0))..pairs.partition_point(|pair| *pair <= (index, u32::MAX));
         let listed = &pairs[listed];
@@ -163,7 +165,7 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
             for y in range[1].clone() {
                 for x in range[0].clone() {
                     let (cell_low, cell_high) = cell_box(&header, [x, y, z]);
-                    if overlaps(v, cell_low, cell_high) {
+                    if overlaps(v, cell_low.map(|x| x - margin), cell_high.map(|x| x + margin)) {
                         let id = cell_id([x, y, z], header.resolution);
                         let found = listed.binary_search(&(index, id)).is_ok();
                         require!(found, "cell {id} ({x}, {y}, {z}) does not list triangle {index}: {v:?}");
@@ -224,6 +226,34 @@ fn grids_of_fixed_resolutions() {
             let capacity = gridwalk::Capacity { triangles: 1_000, cells: 20_000, pairs: 1 << 20 };
             let built = gpu.build(&mesh, capacity, options);
             assert_eq!(built.report.resolution, resolution.map(|n| n.min(4096)));
+            check(gpu, &built, &mesh).unwrap_or_else(|error| panic!("{resolution:?}, {overlap:?}: {error}"));
+        }
+    }
+}
+
+/// Axis-aligned and diagonal triangles whose vertices, edges and planes lie on boundaries of cells.
+#[test]
+fn grids_of_triangles_on_boundaries() {
+    let gpu = Gpu::shared();
+    let mut random = Random::new(7);
+    let mut triangles = vec![[[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], [1.0, -1.0, 1.0]]];
+    for _ in 0..600 {
+        let corner: [f32; 3] = std::array::from_fn(|_| random.below(13) as f32 / 8.0 - 1.0);
+        let (axis, size) = (random.below(3) as usize, (1 + random.below(3)) as f32 / 8.0);
+        let step = |along: usize| {
+            let mut vertex = corner;
+            vertex[along % 3] += size;
+            vertex
+        };
+        triangles.push([corner, step(axis), if random.below(2) == 0 { step(axis + 1) } else { corner.map(|x| x + size) }]);
+    }
+    let mesh = Mesh::from_triangles(&triangles);
+    for overlap in [Overlap::Box, Overlap::Exact] {
+        for resolution in [[16; 3], [8, 4, 32]] {
+            let options = BuildOptions { resolution: Some(resolution), overlap, ..BuildOptions::default() };
+            let capacity = gridwalk::Capacity { triangles: 601, cells: 4_096, pairs: 1 << 20 };
+            let built = gpu.build(&mesh, capacity, options);
+            assert_eq!((built.report.resolution, built.report.overflow), (resolution, 0));
             check(gpu, &built, &mesh).unwrap_or_else(|error| panic!("{resolution:?}, {overlap:?}: {error}"));
         }
     }

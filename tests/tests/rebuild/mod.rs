@@ -1,6 +1,7 @@
 //! Grids that the device built: what must hold of every one of them.
 
 mod again;
+mod errors;
 mod hostile;
 mod invariants;
 mod overflow;
