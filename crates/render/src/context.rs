@@ -596,8 +596,12 @@ impl Buffer {
             unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), pointer.add(offset as usize), bytes.len()) };
             return Ok(());
         }
+        self.write_staged(offset, bytes, STAGING_BYTES)
+    }
+
+    fn write_staged(&self, offset: u64, bytes: &[u8], most: u64) -> Result<()> {
         let context = self.context();
-        let piece = STAGING_BYTES.min(bytes.len() as u64);
+        let piece = most.min(bytes.len() as u64);
         let staging = context.buffer(&BufferDesc { name: "upload staging", size: piece, kind: BufferKind::Upload, dedicated: false })?;
         let mut at = offset;
         for chunk in bytes.chunks(piece as usize) {
@@ -627,8 +631,13 @@ impl Buffer {
             unsafe { std::ptr::copy_nonoverlapping(pointer.add(offset as usize), bytes.as_mut_ptr(), bytes.len()) };
             return Ok(data);
         }
+        self.read_staged(offset, bytes, STAGING_BYTES)?;
+        Ok(data)
+    }
+
+    fn read_staged(&self, offset: u64, bytes: &mut [u8], most: u64) -> Result<()> {
         let context = self.context();
-        let piece = STAGING_BYTES.min(bytes.len() as u64);
+        let piece = most.min(bytes.len() as u64);
         let staging =
             context.buffer(&BufferDesc { name: "read-back staging", size: piece, kind: BufferKind::Readback, dedicated: false })?;
         let Some(pointer) = staging.mapped(false) else {
@@ -641,7 +650,7 @@ impl Buffer {
             unsafe { std::ptr::copy_nonoverlapping(pointer, chunk.as_mut_ptr(), chunk.len()) };
             at += chunk.len() as u64;
         }
-        Ok(data)
+        Ok(())
     }
 }
 
@@ -726,6 +735,26 @@ mod tests {
         assert_eq!(context.take_validation_messages(), Vec::<String>::new());
         drop(context);
         assert!(shared.upgrade().is_none());
+    }
+
+    /// The way that data takes to memory which the host does not see: on a GPU with its own memory.
+    #[test]
+    fn data_travels_in_pieces() {
+        let context = context();
+        let data: Vec<u8> = (0..1000_u32).flat_map(|i| i.wrapping_mul(2_654_435_761).to_le_bytes()).collect();
+        for piece in [4, 64, 1024, 3996, 4000, 1 << 20] {
+            let buffer = context.upload("pieces", &[0xAB_u8; 4032]).unwrap();
+            buffer.write_staged(16, &data, piece).unwrap();
+            let mut back = vec![0_u8; data.len()];
+            buffer.read_staged(16, &mut back, piece).unwrap();
+            assert!(back == data, "pieces of {piece} bytes");
+            let whole = buffer.read::<u8>(0, 4032).unwrap();
+            assert!(
+                whole[16..4016] == data && whole[..16].iter().chain(&whole[4016..]).all(|&byte| byte == 0xAB),
+                "pieces of {piece} bytes"
+            );
+        }
+        assert_eq!(context.take_validation_messages(), Vec::<String>::new());
     }
 
     #[test]

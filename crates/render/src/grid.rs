@@ -142,9 +142,7 @@ impl GridBuilder {
             let mut grid = match self.allocate(capacity, settings) {
                 Ok(grid) => grid,
                 // Fewer cells need fewer pairs: a coarser grid is better than none.
-                Err(Error::OutOfDeviceMemory { .. } | Error::Gridwalk(gridwalk::Error::DeviceLimit { .. }))
-                    if settings.resolution.is_none() && attempts > 1 && attempts < MAX_ATTEMPTS =>
-                {
+                Err(Error::OutOfDeviceMemory { .. }) if settings.resolution.is_none() && attempts > 1 && attempts < MAX_ATTEMPTS => {
                     settings.density /= 8.0;
                     pairs = first_pairs;
                     continue;
@@ -172,7 +170,13 @@ impl GridBuilder {
 
     fn allocate(&self, capacity: Capacity, settings: BuildSettings) -> Result<Grid> {
         let context = &self.engine.context;
-        let sizes = self.engine.tracer()?.build_sizes(&capacity)?;
+        let sizes = self.engine.tracer()?.build_sizes(&capacity).map_err(|error| match error {
+            // Of one kind with what the memory itself refuses.
+            gridwalk::Error::DeviceLimit { region, needed, limit } => {
+                Error::OutOfDeviceMemory { name: region.to_owned(), needed, available: limit }
+            }
+            error => Error::Gridwalk(error),
+        })?;
         let buffer = |name, size, kind, dedicated| context.buffer(&BufferDesc { name, size, kind, dedicated });
         let grid = buffer("grid", sizes.grid.size, BufferKind::Device, true)?;
         let scratch = buffer("build scratch", sizes.scratch.size, BufferKind::Device, true)?;
@@ -339,4 +343,3 @@ pub(crate) fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<
     };
     Ok(u32::try_from(cells).unwrap_or(u32::MAX).min(MAX_CELLS))
 }
-

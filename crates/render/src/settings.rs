@@ -137,7 +137,7 @@ pub struct RenderSettings {
     pub crop: Option<Crop>,
     /// Samples a pixel, in a fixed stratified pattern; a single one goes through the middle.
     pub spp: u32,
-    /// Reflections that are followed.
+    /// Reflections that are followed; none of a share below 1/4096.
     pub depth: u32,
     /// Layers beside the beauty.
     pub aovs: Vec<Aov>,

@@ -12,6 +12,9 @@ const uint SHADE_CAMERA = 1u; // these are camera rays
 const uint SHADE_TRANSPARENT = 2u; // camera rays do not see the background
 const uint SHADE_LAST = 4u; // nothing reflects any more
 
+// Reflections of a smaller share are not followed: four floors of varnish upon each other cost more rays than all the rest of a picture.
+const float LEAST_WEIGHT = 2.44140625e-4; // 2^-12
+
 layout(push_constant, std430) uniform Shade {
     SceneIn scene;
     QueueIn queue;
@@ -52,7 +55,7 @@ void main() {
         surface.reserved1 = 0.0;
         radiance = mapped_colour(scene, material.emission, material.emission_map, point.uv) + scene.table.ambient * surface.diffuse;
         reflecting = (material.flags & MATERIAL_MIRROR) != 0u && (flags & SHADE_LAST) == 0u
-            && largest_component(path.weight * surface.specular) > 0.0;
+            && largest_component(path.weight * surface.specular) > LEAST_WEIGHT;
         surfaces.surface[i] = surface;
     } else {
         surfaces.surface[i].is_hit = 0u;
