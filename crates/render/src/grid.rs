@@ -82,6 +82,9 @@ pub struct Grid {
 /// How many pairs a triangle are reckoned with before the first count is known.
 const FIRST_PAIRS_EACH: u64 = 4;
 
+/// Below it the triangles themselves are what does not fit.
+const LEAST_DENSITY: f32 = 0.1;
+
 /// Builds that are tried at ever lower densities when a grid does not fit.
 const MAX_ATTEMPTS: u32 = 12;
 
@@ -142,7 +145,7 @@ impl GridBuilder {
             let mut grid = match self.allocate(capacity, settings) {
                 Ok(grid) => grid,
                 // Fewer cells need fewer pairs: a coarser grid is better than none.
-                Err(Error::OutOfDeviceMemory { .. }) if settings.resolution.is_none() && attempts > 1 && attempts < MAX_ATTEMPTS => {
+                Err(Error::OutOfDeviceMemory { .. }) if settings.resolution.is_none() && settings.density > LEAST_DENSITY => {
                     settings.density /= 8.0;
                     pairs = first_pairs;
                     continue;
