@@ -231,6 +231,24 @@ impl Gpu {
         self.check_validation();
     }
 
+    /// Builds one after another in one submission, with the library's barrier in between; they may share scratch.
+    pub fn rebuild_all(&self, grids: &mut [&mut Built]) {
+        self.submit(|cmd| {
+            for built in grids.iter() {
+                // SAFETY: all memory of the builds outlives the submission, which is waited for.
+                unsafe {
+                    self.tracer.cmd_build(cmd, &built.info).unwrap();
+                    cmd_barrier(self.context.device(), cmd, Tracer::BUILD, Tracer::BUILD);
+                }
+            }
+        });
+        for built in grids {
+            built.report = built.report_memory.read(0, 1)[0];
+            built.check_guards();
+        }
+        self.check_validation();
+    }
+
     /// Why a build is refused.
     pub fn refused(&self, info: &BuildInfo) -> gridwalk::Error {
         let mut error = None;

@@ -5,6 +5,7 @@ mod bricks;
 mod cell_ranges;
 mod clear_cells;
 mod configure;
+mod largest;
 mod overlap;
 mod pair_args;
 mod scan;

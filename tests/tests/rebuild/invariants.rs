@@ -217,6 +217,15 @@ fn grids_of_random_triangles() {
 }
 
 #[test]
+fn a_grid_of_many_triangles() {
+    let gpu = Gpu::shared();
+    let mesh = soup(300_000, 0.01, 8);
+    let built = gpu.build(&mesh, gridwalk::Capacity { pairs: 1 << 23, ..mesh.capacity() }, BuildOptions::default());
+    assert_eq!(built.report.overflow, 0);
+    check(gpu, &built, &mesh).unwrap();
+}
+
+#[test]
 fn grids_of_fixed_resolutions() {
     let gpu = Gpu::shared();
     let mesh = soup(1_000, 0.2, 4);
