@@ -1,5 +1,6 @@
 //! Pictures: the device behind them, what the shading promises, and the blessed ones.
 
+mod bits;
 mod context;
 mod grids;
 mod images;
