@@ -2,6 +2,7 @@ use gridwalk::Shape;
 use gridwalk::kernels::{OVERLAP_COUNT, OVERLAP_EMIT};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::layout::{BuildState, GridHeader};
+use gridwalk_core::overlap::triangle_overlaps_cell;
 use gridwalk_core::sort::writes_a;
 use gridwalk_core::twin::overlap_count::overlap_count;
 use gridwalk_core::twin::overlap_emit::overlap_emit;
@@ -9,6 +10,8 @@ use gridwalk_core::twin::scan_spine::exclusive_scan;
 use gridwalk_tests::gpu::{Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
 use gridwalk_tests::random::Random;
+
+use crate::rebuild::invariants::{cell_box, overlaps};
 
 use super::{TINY, assert_same, devices, header, many_groups, sizes, untouched};
 
@@ -147,4 +150,41 @@ fn overlap_on_boundaries() {
     for gpu in devices() {
         check(gpu, &mesh, 0.0, fixed, &[1.0], "vertices on boundaries");
     }
+}
+
+/// A cell grown by the padding on each side, which is how far a walk and a hit may stray together, is listed for each triangle that meets
+/// it: rounding never takes away more than the second padding of the test. Triangles as large as the grid pass by corners of small cells.
+#[test]
+fn exact_overlap_keeps_the_padding() {
+    let span = 1.999;
+    let mesh = Mesh::from_triangles(&[[[-span; 3], [span; 3], [span, -span, span]]]);
+    let grid = header(&mesh, 0.0, [2048, 2048, 64]);
+    let (mut met, mut close) = (0, 0);
+    for seed in 0..400_000 {
+        let random = &mut Random::new(seed);
+        let cell = grid.resolution.map(|n| random.below(n));
+        let (low, high) = cell_box(&grid, cell);
+        let out: [f64; 3] = std::array::from_fn(|_| if random.below(2) == 0 { -1.0 } else { 1.0 });
+        let away = f64::from(grid.pad) * f64::from(random.range(0.9, 1.02));
+        let corner: [f64; 3] = std::array::from_fn(|i| if out[i] < 0.0 { low[i] - away } else { high[i] + away });
+        // A plane through the grown corner that leaves the cell on one side, and a triangle in it that holds the corner.
+        let normal: [f64; 3] = std::array::from_fn(|i| out[i] * f64::from(random.range(0.05, 1.0)));
+        let around = f64::from(random.unit()) * std::f64::consts::TAU;
+        let v = [0.0, 1.0, 2.0].map(|third| {
+            let angle = around + third * std::f64::consts::TAU / 3.0;
+            let (x, y) = (1.5 * angle.cos(), 1.5 * angle.sin());
+            let z = -(normal[0] * x + normal[1] * y) / normal[2];
+            let point = [corner[0] + x, corner[1] + y, corner[2] + z];
+            point.map(|x| x.clamp(-2.0, 2.0) as f32)
+        });
+        let double = v.map(|v| v.map(f64::from));
+        let pad = f64::from(grid.pad);
+        if overlaps(&double, low.map(|x| x - pad), high.map(|x| x + pad)) {
+            met += 1;
+            assert!(triangle_overlaps_cell(&grid, v, cell), "seed {seed}: cell {cell:?}, {v:?}");
+        } else if overlaps(&double, low.map(|x| x - 1.2 * pad), high.map(|x| x + 1.2 * pad)) {
+            close += 1;
+        }
+    }
+    assert!(met > 20_000 && close > 2_000, "{met} met, {close} close");
 }

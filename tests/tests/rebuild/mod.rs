@@ -3,6 +3,6 @@
 mod again;
 mod errors;
 mod hostile;
-mod invariants;
+pub mod invariants;
 mod overflow;
 mod plan;
