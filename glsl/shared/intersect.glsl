@@ -121,9 +121,18 @@ bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, ou
     if ((negative && positive) || determinant == 0.0) {
         return false;
     }
+    // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
+    // for planes along the axes, and never beyond the triangle's vertices.
+    vec3 e1 = b - a;
+    vec3 e2 = c - a;
+    vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+    float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
+    if (facing == 0.0) {
+        return false;
+    }
+    float along = (normal.x * a.x + normal.y * a.y + normal.z * a.z) / facing;
+    s = min(max(along, min(a.z, min(b.z, c.z))), max(a.z, max(b.z, c.z))) * ray.shear.z;
     float inverse = 1.0 / determinant;
-    float along = edge_u * a.z + edge_v * b.z + edge_w * c.z;
-    s = along * ray.shear.z * inverse;
     u = edge_v * inverse;
     v = edge_w * inverse;
     return true;

@@ -152,7 +152,18 @@ pub fn intersect_triangle(ray: &MovedRay, vertices: [Vec3; 3]) -> Option<Interse
     if (negative && positive) || determinant == 0.0 {
         return None;
     }
+    // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
+    // for planes along the axes, and never beyond the triangle's vertices.
+    let e1 = sub(b, a);
+    let e2 = sub(c, a);
+    let normal = [e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]];
+    let facing = normal[0] * ray.shear[0] + normal[1] * ray.shear[1] + normal[2];
+    if facing == 0.0 {
+        return None;
+    }
+    let along = (normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2]) / facing;
+    let least = min_f32(a[2], min_f32(b[2], c[2]));
+    let greatest = max_f32(a[2], max_f32(b[2], c[2]));
     let inverse = 1.0 / determinant;
-    let along = edge_u * a[2] + edge_v * b[2] + edge_w * c[2];
-    Some(Intersection { s: along * ray.shear[2] * inverse, u: edge_v * inverse, v: edge_w * inverse })
+    Some(Intersection { s: min_f32(max_f32(along, least), greatest) * ray.shear[2], u: edge_v * inverse, v: edge_w * inverse })
 }
