@@ -41,12 +41,12 @@ bool separates(vec3 axis, vec3 half_size, vec3 v0, vec3 v1, vec3 v2) {
 }
 
 // Separating axes: the triangle's normal and the nine products of an edge and a box axis; the box axes are overlapped_box's. The box is
-// padded twice: once as the invariant asks, once for the rounding of the projections, which is below pad / 2.
+// padded three times: once as the invariant asks, twice for the rounding of the projections, which comes to little more than one pad.
 bool triangle_overlaps_cell(GridHeader grid, vec3 v0, vec3 v1, vec3 v2, uvec3 cell) {
     vec3 low = boundary(grid.box_min, grid.cell_size, vec3(cell));
     vec3 half_size = grid.cell_size * 0.5;
     vec3 centre = low + half_size;
-    half_size += vec3(grid.pad * 2.0);
+    half_size += vec3(grid.pad * 3.0);
     vec3 a = v0 - centre;
     vec3 b = v1 - centre;
     vec3 c = v2 - centre;

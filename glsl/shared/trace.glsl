@@ -21,10 +21,12 @@ layout(constant_id = 2) const bool LAST = false; // a walk that is given up now 
 layout(constant_id = 3) const bool RESUME = false; // existing hits are to be beaten
 layout(constant_id = 4) const bool COUNT = false;
 
+// A turn walks through empty cells to the next list, then tests triangles of it: so the invocations of a subgroup mostly do the same.
 // lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over all of its loops and over the divergent paths of
-// its subgroup: TURNS * (1 + TESTS_EACH_TURN) = 32,768 stays below.
-const uint TURNS = 4096u;
-const uint TESTS_EACH_TURN = 7u;
+// its subgroup: TURNS * (1 + STEPS_EACH_TURN + TESTS_EACH_TURN) = 32,760 stays below.
+const uint TURNS = 819u;
+const uint STEPS_EACH_TURN = 8u;
+const uint TESTS_EACH_TURN = 31u;
 
 struct Counters {
     uint steps; // cells visited
@@ -49,6 +51,17 @@ void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
 // Walks until the end or for TURNS turns; true at the end.
 bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
     for (uint turn = 0u; turn < TURNS; ++turn) {
+        uint steps = 0u;
+        while (walk.reference >= walk.list_end && steps < STEPS_EACH_TURN) {
+            if (walk_is_over(walk) || !walk_step(walk, grid)) {
+                return true;
+            }
+            steps += 1u;
+            if (COUNT) {
+                counters.steps += 1u;
+                counters.cells += uint(walk.reference < walk.list_end);
+            }
+        }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
             uint triangle = References(grid.references).triangle[walk.reference];
@@ -64,15 +77,6 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
 #ifdef TRACE_ANY
                 return true;
 #endif
-            }
-        }
-        if (walk.reference >= walk.list_end) {
-            if (walk_is_over(walk) || !walk_step(walk, grid)) {
-                return true;
-            }
-            if (COUNT) {
-                counters.steps += 1u;
-                counters.cells += uint(walk.reference < walk.list_end);
             }
         }
     }

@@ -59,7 +59,7 @@ pub fn triangle_overlaps_cell(grid: &GridHeader, v: [Vec3; 3], cell: [u32; 3]) -
     let low = boundary(grid.box_min, grid.cell_size, cell.map(|i| i as f32));
     let half_cell = grid.cell_size.map(|size| size * 0.5);
     let centre = add(low, half_cell);
-    let half_size = half_cell.map(|half| half + grid.pad * 2.0);
+    let half_size = half_cell.map(|half| half + grid.pad * 3.0);
     let [a, b, c] = v.map(|v| sub(v, centre));
     let edges = [sub(b, a), sub(c, b), sub(a, c)];
     let [e0, e1, _] = edges;

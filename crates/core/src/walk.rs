@@ -8,9 +8,11 @@ use crate::ray::MISS;
 use crate::vector::{Vec3, add, max, max_f32, min, min_f32, mul, sub};
 
 /// Turns of a walk in one dispatch, after which it is given up.
-pub const TURNS: u32 = 4096;
+pub const TURNS: u32 = 819;
+/// Cells visited in a turn.
+pub const STEPS_EACH_TURN: u32 = 8;
 /// Triangles tested in a turn.
-pub const TESTS_EACH_TURN: u32 = 7;
+pub const TESTS_EACH_TURN: u32 = 31;
 /// Turns of a walk through the public include.
 pub const GRIDWALK_TURNS: u32 = 32_768;
 /// Added to the distance of a boundary that the ray does not move towards.
@@ -222,6 +224,17 @@ pub fn walk_restore(walk: &mut Walk, grid: &Grid, saved: &WalkState) {
 /// Walks until the end or for [`TURNS`] turns; true at the end. With `any`, the first hit is the end.
 pub fn walk_run(walk: &mut Walk, grid: &Grid, any: bool, counters: &mut Counters, observer: &mut impl Observer) -> bool {
     for _ in 0..TURNS {
+        let mut steps = 0;
+        while walk.reference >= walk.list_end && steps < STEPS_EACH_TURN {
+            let entry = walk.exit;
+            if walk_is_over(walk) || !walk_step(walk, grid) {
+                return true;
+            }
+            steps += 1;
+            counters.steps += 1;
+            counters.cells += u32::from(walk.reference < walk.list_end);
+            observer.cell(walk, grid, entry);
+        }
         let stop = walk.list_end.min(walk.reference + TESTS_EACH_TURN);
         while walk.reference < stop {
             let triangle = grid.references[walk.reference as usize];
@@ -235,15 +248,6 @@ pub fn walk_run(walk: &mut Walk, grid: &Grid, any: bool, counters: &mut Counters
                     return true;
                 }
             }
-        }
-        if walk.reference >= walk.list_end {
-            let entry = walk.exit;
-            if walk_is_over(walk) || !walk_step(walk, grid) {
-                return true;
-            }
-            counters.steps += 1;
-            counters.cells += u32::from(walk.reference < walk.list_end);
-            observer.cell(walk, grid, entry);
         }
     }
     false
