@@ -23,7 +23,8 @@
 
 #include "shared/walk.glsl"
 
-// lavapipe ends every loop of an invocation, silently, after 65,535 turns.
+// lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over the divergent invocations of its subgroup: a loop over
+// gridwalk_next, whose invocations wait for each other at each candidate, may need fewer there where lists are that long.
 #ifndef GRIDWALK_TURNS
 #define GRIDWALK_TURNS 32768u
 #endif
@@ -58,28 +59,34 @@ GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
     return candidates;
 }
 
+// One turn: a triangle is tested, or the walk steps. True if there is a candidate.
+bool gridwalk_turn(inout GridwalkCandidates candidates) {
+    candidates.unfinished = candidates.turns >= GRIDWALK_TURNS;
+    candidates.turns += 1u;
+    if (candidates.unfinished) {
+        candidates.searching = false;
+    } else if (candidates.walk.reference < candidates.walk.list_end) {
+        uint triangle = References(candidates.grid.references).triangle[candidates.walk.reference];
+        candidates.walk.reference += 1u;
+        float u;
+        float v;
+        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)) {
+            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
+            return true;
+        }
+    } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {
+        candidates.searching = false;
+    }
+    return false;
+}
+
 // Finds the next candidate; false when there is none, and from then on.
 bool gridwalk_next(inout GridwalkCandidates candidates) {
     while (candidates.searching) {
-        if (candidates.turns >= GRIDWALK_TURNS) {
-            candidates.unfinished = true;
-            break;
-        }
-        candidates.turns += 1u;
-        if (candidates.walk.reference < candidates.walk.list_end) {
-            uint triangle = References(candidates.grid.references).triangle[candidates.walk.reference];
-            candidates.walk.reference += 1u;
-            float u;
-            float v;
-            if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)) {
-                candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
-                return true;
-            }
-        } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {
-            break;
+        if (gridwalk_turn(candidates)) {
+            return true;
         }
     }
-    candidates.searching = false;
     return false;
 }
 
@@ -104,8 +111,11 @@ Hit gridwalk_committed(GridwalkCandidates candidates) {
 
 Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) {
     GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
-    while (gridwalk_next(candidates)) {
-        gridwalk_commit(candidates);
+    // One loop, in which all invocations take their turns together: see GRIDWALK_TURNS.
+    while (candidates.searching) {
+        if (gridwalk_turn(candidates)) {
+            gridwalk_commit(candidates);
+        }
     }
     return gridwalk_committed(candidates);
 }

@@ -9,7 +9,9 @@ use gridwalk::{
     BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, Hit, Ray, RayCount, Region, Report, Shape, Timestamps, TraceInfo, Tracer,
     cmd_barrier,
 };
-use gridwalk_core::layout::GridHeader;
+use gridwalk_core::grid::brick_resolution;
+use gridwalk_core::layout::{Brick, GridHeader};
+use gridwalk_core::walk::Grid;
 use gridwalk_render::{Buffer, BufferDesc, BufferKind, Context, ContextDesc};
 
 /// Triangles as the library takes them.
@@ -37,6 +39,33 @@ impl Mesh {
         let triangles = self.indices.len() as u32;
         Capacity { triangles, cells: 16 * triangles + 64, pairs: 16 * triangles + 4096 }
     }
+}
+
+/// A grid's memory, read back: what the CPU twins of the trace kernels walk.
+#[derive(Clone, Debug)]
+pub struct GridCopy {
+    pub header: GridHeader,
+    pub bricks: Vec<Brick>,
+    pub cells: Vec<[u32; 2]>,
+    pub references: Vec<u32>,
+    pub triangles: Vec<[[f32; 4]; 3]>,
+}
+
+impl GridCopy {
+    pub fn view(&self) -> Grid<'_> {
+        Grid { header: &self.header, bricks: &self.bricks, cells: &self.cells, references: &self.references, triangles: &self.triangles }
+    }
+}
+
+/// What a trace of the closest hits is asked for beside its rays.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TraceOptions<'a> {
+    /// The number of rays lies in memory, and is this.
+    pub indirect: Option<u32>,
+    /// Goes on from these hits.
+    pub resume: Option<&'a [Hit]>,
+    /// Counts steps, tests and cells.
+    pub count: bool,
 }
 
 /// The device of the tests. Validation is on unless `GRIDWALK_VALIDATE=0`; each message fails the test that asks next.
@@ -119,6 +148,29 @@ impl Built {
         let memory =
             [&self.grid, &self.scratch, &self.report_memory].into_iter().find(|memory| memory.region().buffer == region.buffer).unwrap();
         memory.read(region.offset - GUARD, count)
+    }
+
+    /// Blocks of cells.
+    pub fn bricks(&self) -> Vec<Brick> {
+        let header = self.header();
+        self.grid.read(self.offset(header.bricks), brick_resolution(header.resolution).iter().product::<u32>() as usize)
+    }
+
+    pub fn copy(&self) -> GridCopy {
+        GridCopy {
+            header: self.header(),
+            bricks: self.bricks(),
+            cells: self.cells(),
+            references: self.references(),
+            triangles: self.triangles(),
+        }
+    }
+
+    /// Lists another triangle wherever this one is listed: a grid that is wrong, for negative controls.
+    pub fn forget_triangle(&self, victim: u32, instead: u32) {
+        let mut references = self.references();
+        references.iter_mut().filter(|reference| **reference == victim).for_each(|reference| *reference = instead);
+        self.grid.write(self.offset(self.header().references), &references);
     }
 
     pub fn check_guards(&self) {
@@ -399,6 +451,50 @@ impl Gpu {
         self.trace(built, rays, |cmd, grid, info| {
             // SAFETY: see `trace`.
             unsafe { self.tracer.cmd_closest_candidate(cmd, grid, info) }
+        })
+    }
+
+    /// The closest hits in guarded memory, with everything that may be asked for. Hits of rays beyond the number in memory keep the canary;
+    /// counters are empty unless counted.
+    pub fn closest_with(&self, built: &Built, rays: &[Ray], options: &TraceOptions) -> (Vec<Hit>, Vec<[u32; 4]>) {
+        let max = rays.len() as u32;
+        let ray_memory = self.upload("rays", rays);
+        let hits = self.guarded("hits", size_of_val(rays).max(32) as u64 / 2);
+        if let Some(existing) = options.resume {
+            hits.write(0, existing);
+        }
+        let counters = self.guarded("counters", rays.len().max(1) as u64 * 16);
+        let number = self.upload("ray count", &[options.indirect.unwrap_or(0)]);
+        let scratch = self.guarded("trace scratch", self.tracer.trace_scratch_size(max).unwrap().size);
+        let info = TraceInfo {
+            rays: ray_memory.region(),
+            hits: hits.region(),
+            count: match options.indirect {
+                Some(_) => RayCount::Indirect { count: number.region(), max },
+                None => RayCount::Direct(max),
+            },
+            scratch: scratch.region(),
+            resume: options.resume.is_some(),
+            counters: options.count.then(|| counters.region()),
+        };
+        self.submit(|cmd| {
+            // SAFETY: all memory lives until the submission has ended, which `submit` waits for.
+            unsafe { self.tracer.cmd_closest_hit(cmd, built.grid.region().address, &info) }.unwrap();
+        });
+        for memory in [&ray_memory, &hits, &counters, &number, &scratch, &built.grid] {
+            memory.check();
+        }
+        self.check_validation();
+        (hits.read(0, rays.len()), if options.count { counters.read(0, rays.len()) } else { Vec::new() })
+    }
+
+    /// Whether rays hit anything, their number being in memory. Results of rays beyond it keep the canary.
+    pub fn any_indirect(&self, built: &Built, rays: &[Ray], number: u32) -> Vec<u32> {
+        let count = self.upload("ray count", &[number]);
+        self.trace(built, rays, |cmd, grid, info| {
+            let info = TraceInfo { count: RayCount::Indirect { count: count.region(), max: rays.len() as u32 }, ..*info };
+            // SAFETY: see `trace`; the count lives until then too.
+            unsafe { self.tracer.cmd_any_hit(cmd, grid, &info) }
         })
     }
 

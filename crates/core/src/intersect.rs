@@ -3,7 +3,7 @@
 
 use crate::layout::GridHeader;
 use crate::ray::Ray;
-use crate::vector::{Vec3, add, clamped_exponent, is_finite, largest, max, max_f32, min, min_f32, power_of_two, sub};
+use crate::vector::{Vec3, add, clamped_exponent, is_finite, largest, max_f32, min_f32, power_of_two, sub};
 
 /// Components of a direction below this part of the largest count as zero: 2^-40.
 pub const NEGLIGIBLE_COMPONENT: f32 = 9.094_947e-13;
@@ -13,10 +13,10 @@ pub const SLAB_TOLERANCE: f32 = 9.536_743e-7;
 /// A ray in the grid's frame: the points `origin + s * direction`.
 ///
 /// The direction is the ray's, times a power of two that brings its largest component into [1, 2). The origin is where the ray enters the
-/// padded box, or its own start inside.
+/// padded box, or a little before, or its own start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovedRay {
-    /// Inside of the padded box.
+    /// Where s is 0.
     pub origin: Vec3,
     /// Scaled; negligible components are zero.
     pub direction: Vec3,
@@ -83,6 +83,7 @@ pub fn move_ray(ray: &Ray, grid: &GridHeader) -> Option<MovedRay> {
             leave = min_f32(leave, far);
         }
     }
+    entry -= entry.abs() * SLAB_TOLERANCE;
     leave += leave.abs() * SLAB_TOLERANCE;
     let start = max_f32(entry, first);
     // No >, which a NaN would pass.
@@ -90,7 +91,10 @@ pub fn move_ray(ray: &Ray, grid: &GridHeader) -> Option<MovedRay> {
         return None;
     }
     let travelled = direction.map(|x| start * x);
-    let origin = min(max(add(origin, travelled), grid.box_min), grid.box_max);
+    let origin = add(origin, travelled);
+    if !is_finite(origin) {
+        return None;
+    }
 
     let magnitude = direction.map(f32::abs);
     let z_is_x = magnitude[0] >= magnitude[1] && magnitude[0] >= magnitude[2];
@@ -149,7 +153,7 @@ pub fn intersect_triangle(ray: &MovedRay, vertices: [Vec3; 3]) -> Option<Interse
     let negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
     let positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
     let determinant = edge_u + edge_v + edge_w;
-    if (negative && positive) || determinant == 0.0 {
+    if (negative && positive) || determinant.abs() < f32::MIN_POSITIVE {
         return None;
     }
     // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact

@@ -1,9 +1,9 @@
 //! The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), as `shared/walk.glsl` and
-//! `shared/trace.glsl` have it.
+//! `shared/trace.glsl` have it: with jumps across bricks that are known to be empty.
 
-use crate::grid::{boundary, cell_of};
+use crate::grid::{boundary, brick_resolution, cell_id, cell_of};
 use crate::intersect::{Intersection, MovedRay, intersect_triangle};
-use crate::layout::{GridHeader, WalkState};
+use crate::layout::{Brick, GridHeader, WalkState};
 use crate::ray::MISS;
 use crate::vector::{Vec3, add, max, max_f32, min, min_f32, mul, sub};
 
@@ -23,6 +23,8 @@ pub const BEYOND: f32 = 3.0e38;
 pub struct Grid<'a> {
     /// Head of the grid.
     pub header: &'a GridHeader,
+    /// Bricks of 4^3 cells.
+    pub bricks: &'a [Brick],
     /// Begin and end of each cell's list.
     pub cells: &'a [[u32; 2]],
     /// The lists of all cells.
@@ -40,7 +42,7 @@ impl Grid<'_> {
 
 /// Sees each step of a walk. Its default does nothing.
 pub trait Observer {
-    /// The walk is in a cell, having entered it at `entry`; it leaves at `walk.exit`.
+    /// The walk is in a block of cells, having entered it at `entry`; it leaves at `walk.exit`.
     fn cell(&mut self, _walk: &Walk, _grid: &Grid, _entry: f32) {}
 
     /// A triangle of the cell's list is tested.
@@ -55,11 +57,11 @@ impl Observer for () {}
 /// Numbers of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Cells visited.
+    /// Blocks visited.
     pub steps: u32,
     /// Triangles tested.
     pub tests: u32,
-    /// Cells visited that are not empty.
+    /// Blocks visited that are cells with triangles.
     pub cells: u32,
 }
 
@@ -72,17 +74,17 @@ pub struct Walk {
     pub inverse: Vec3,
     /// Added to the distances: beyond any where the direction is 0.
     pub never: Vec3,
-    /// 1 where the boundary ahead is the cell's upper one.
-    pub ahead: Vec3,
-    /// Cell ids along each axis, with the sign of the direction.
-    pub stride: [i32; 3],
+    /// Whether the direction is positive.
+    pub up: [bool; 3],
     /// Where the walk is.
     pub cell: [i32; 3],
-    /// Index of that cell.
-    pub id: i32,
+    /// First cell of the block around it.
+    pub low: [i32; 3],
+    /// End of the block, exclusive.
+    pub high: [i32; 3],
     /// s of the boundary ahead along each axis.
     pub boundaries: Vec3,
-    /// s at which the cell is left.
+    /// s at which the block is left.
     pub exit: f32,
     /// Next in the cell's list.
     pub reference: u32,
@@ -98,16 +100,38 @@ pub struct Walk {
     pub best_triangle: u32,
 }
 
-fn walk_measure(walk: &mut Walk, header: &GridHeader) {
-    let edges = boundary(header.box_min, header.cell_size, add(walk.cell.map(|i| i as f32), walk.ahead));
+/// Looks at the cell: its list, the block around it, and where the ray leaves that.
+fn walk_enter(walk: &mut Walk, grid: &Grid) {
+    let header = grid.header;
+    let bricks_along = brick_resolution(header.resolution);
+    let at = walk.cell.map(|i| i >> 2);
+    let brick = grid.bricks[cell_id(at.map(|i| i as u32), bricks_along) as usize];
+    let inner = walk.cell.map(|i| i & 3);
+    let bit = inner[0] | (inner[1] << 2) | ((inner[2] & 1) << 4);
+    let word = brick.mask[usize::from(inner[2] >= 2)];
+    [walk.reference, walk.list_end] = [0, 0];
+    if (word >> bit) & 1 != 0 {
+        [walk.reference, walk.list_end] = grid.cells[cell_id(walk.cell.map(|i| i as u32), header.resolution) as usize];
+    }
+    let reach = brick.distance as i32;
+    (walk.low, walk.high) = if reach == 0 {
+        (walk.cell, walk.cell.map(|i| i + 1))
+    } else {
+        let end = header.resolution;
+        (at.map(|i| ((i - (reach - 1)) << 2).max(0)), std::array::from_fn(|axis| ((at[axis] + reach) << 2).min(end[axis] as i32)))
+    };
+    let ahead = std::array::from_fn(|axis| (if walk.up[axis] { walk.high[axis] } else { walk.low[axis] }) as f32);
+    let edges = boundary(header.box_min, header.cell_size, ahead);
     walk.boundaries = add(mul(sub(edges, walk.ray.origin), walk.inverse), walk.never);
     let nearest = min_f32(walk.boundaries[0], min_f32(walk.boundaries[1], walk.boundaries[2]));
     walk.exit = max_f32(walk.exit, nearest);
 }
 
-fn walk_enter(walk: &mut Walk, grid: &Grid) {
-    walk_measure(walk, grid.header);
-    [walk.reference, walk.list_end] = grid.cells[walk.id as usize];
+fn walk_cell_at(walk: &Walk, header: &GridHeader, s: f32) -> [i32; 3] {
+    let travelled = walk.ray.direction.map(|x| s * x);
+    let cells = mul(sub(add(walk.ray.origin, travelled), header.box_min), header.inverse_cell_size).map(f32::floor);
+    let last = sub(header.resolution.map(|n| n as f32), [1.0; 3]);
+    min(max(cells, [0.0; 3]), last).map(|x| x as i32)
 }
 
 /// A walk that has no cell: for tests of triangles alone.
@@ -116,10 +140,10 @@ pub fn walk_nowhere(ray: MovedRay) -> Walk {
         ray,
         inverse: [0.0; 3],
         never: [0.0; 3],
-        ahead: [0.0; 3],
-        stride: [0; 3],
+        up: [false; 3],
         cell: [0; 3],
-        id: 0,
+        low: [0; 3],
+        high: [0; 3],
         boundaries: [0.0; 3],
         exit: 0.0,
         reference: 0,
@@ -133,40 +157,39 @@ pub fn walk_nowhere(ray: MovedRay) -> Walk {
 
 /// At the ray's first cell. Only for a grid of at least one cell.
 pub fn walk_begin(grid: &Grid, ray: MovedRay) -> Walk {
-    let header = grid.header;
     let still = ray.direction.map(|x| x == 0.0);
-    let up = ray.direction.map(|x| x > 0.0);
-    let extent = header.resolution.map(|n| n as i32);
-    let strides = [1, extent[0], extent[0] * extent[1]];
-    let last = sub(header.resolution.map(|n| n as f32), [1.0; 3]);
-    let first = min(max(mul(sub(ray.origin, header.box_min), header.inverse_cell_size).map(f32::floor), [0.0; 3]), last);
-    let cell = first.map(|x| x as i32);
     let mut walk = Walk {
         inverse: std::array::from_fn(|axis| if still[axis] { 0.0 } else { 1.0 / ray.direction[axis] }),
         never: still.map(|still| if still { BEYOND } else { 0.0 }),
-        ahead: up.map(|up| if up { 1.0 } else { 0.0 }),
-        stride: std::array::from_fn(|axis| if up[axis] { strides[axis] } else { -strides[axis] }),
-        cell,
-        id: cell[0] + cell[1] * strides[1] + cell[2] * strides[2],
+        up: ray.direction.map(|x| x > 0.0),
         ..walk_nowhere(ray)
     };
+    walk.cell = walk_cell_at(&walk, grid.header, 0.0);
     walk_enter(&mut walk, grid);
     walk
 }
 
-/// Into the next cell; false outside of the grid.
+/// Into the next block; false outside of the grid.
 pub fn walk_step(walk: &mut Walk, grid: &Grid) -> bool {
     let [x, y, z] = walk.boundaries;
-    let axis = if x <= y && x <= z {
+    let along = if x <= y && x <= z {
         0
     } else if y <= z {
         1
     } else {
         2
     };
-    walk.cell[axis] += if walk.stride[axis] > 0 { 1 } else { -1 };
-    walk.id += walk.stride[axis];
-    if walk.cell[axis] as u32 >= grid.header.resolution[axis] {
+    let inside = walk_cell_at(walk, grid.header, walk.exit);
+    walk.cell = std::array::from_fn(|axis| {
+        let (cell, low, high) = (walk.cell[axis], walk.low[axis], walk.high[axis]);
+        match (axis == along, walk.up[axis]) {
+            (true, true) => high,
+            (true, false) => low - 1,
+            (false, true) => inside[axis].max(cell).min(high - 1),
+            (false, false) => inside[axis].max(low).min(cell),
+        }
+    });
+    if walk.cell[along] as u32 >= grid.header.resolution[along] {
         return false;
     }
     walk_enter(walk, grid);
@@ -198,10 +221,10 @@ pub fn walk_commit(walk: &mut Walk, hit: Intersection, triangle: u32) {
 }
 
 /// What the next dispatch needs to go on.
-pub fn walk_save(walk: &Walk) -> WalkState {
+pub fn walk_save(walk: &Walk, grid: &Grid) -> WalkState {
     WalkState {
         given_up: 1,
-        cell: walk.id as u32,
+        cell: cell_id(walk.cell.map(|i| i as u32), grid.header.resolution),
         reference: walk.reference,
         exit: walk.exit,
         best_s: walk.best_s,
@@ -214,7 +237,6 @@ pub fn walk_save(walk: &Walk) -> WalkState {
 /// Goes on where a walk was given up.
 pub fn walk_restore(walk: &mut Walk, grid: &Grid, saved: &WalkState) {
     walk.cell = cell_of(saved.cell, grid.header.resolution).map(|i| i as i32);
-    walk.id = saved.cell as i32;
     walk.exit = saved.exit;
     walk_enter(walk, grid);
     walk.reference = saved.reference;

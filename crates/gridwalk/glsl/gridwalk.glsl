@@ -120,7 +120,7 @@ uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cel
 #endif
 
 // Points origin + s * direction. The direction is the ray's, times a power of two that brings its largest component into [1, 2); a
-// component below 2^-40 of the largest is zero. The origin is where the ray enters the padded box, or its own start inside.
+// component below 2^-40 of the largest is zero. The origin is where the ray enters the padded box, or a little before, or its own start.
 struct MovedRay {
     vec3 origin;
     vec3 direction;
@@ -138,6 +138,7 @@ struct MovedRay {
 
 const float NEGLIGIBLE_COMPONENT = 9.094947017729282e-13; // 2^-40
 const float SLAB_TOLERANCE = 9.5367431640625e-07; // 2^-20, above the rounding of a slab's distance by 2.5 ulp divisions
+const float LEAST_NORMAL = 1.1754943508222875e-38; // 2^-126
 
 // 2^e for -126 <= e <= 127.
 float power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
@@ -183,13 +184,16 @@ MovedRay move_ray(Ray ray, GridHeader grid) {
             leave = min(leave, far);
         }
     }
+    // From far away both are rounded by more than the padding; what lies behind the origin is never visited.
+    entry -= abs(entry) * SLAB_TOLERANCE;
     leave += abs(leave) * SLAB_TOLERANCE;
     moved.start = max(entry, first);
     // No >, which a NaN would pass.
     moved.valid = moved.valid && moved.start <= leave && moved.start <= last;
     vec3 travelled = moved.start * direction;
-    // From far away the entry is rounded by more than the padding: the walk needs an origin inside of the box.
-    moved.origin = min(max(origin + travelled, grid.box_min), grid.box_max);
+    moved.origin = origin + travelled;
+    // A ray that starts 2^127 of the grid's units away is lost.
+    moved.valid = moved.valid && is_finite(moved.origin);
     moved.s_min = first - moved.start;
     moved.s_max = last - moved.start;
 
@@ -233,7 +237,8 @@ bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, ou
     bool negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
     bool positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
     float determinant = edge_u + edge_v + edge_w;
-    if ((negative && positive) || determinant == 0.0) {
+    // The inverse of a denormal may be infinite.
+    if ((negative && positive) || abs(determinant) < LEAST_NORMAL) {
         return false;
     }
     // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
@@ -372,7 +377,8 @@ void walk_commit(inout Walk walk, float s, float u, float v, uint triangle) {
 
 #endif
 
-// lavapipe ends every loop of an invocation, silently, after 65,535 turns.
+// lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over the divergent invocations of its subgroup: a loop over
+// gridwalk_next, whose invocations wait for each other at each candidate, may need fewer there where lists are that long.
 #ifndef GRIDWALK_TURNS
 #define GRIDWALK_TURNS 32768u
 #endif
@@ -407,28 +413,34 @@ GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
     return candidates;
 }
 
+// One turn: a triangle is tested, or the walk steps. True if there is a candidate.
+bool gridwalk_turn(inout GridwalkCandidates candidates) {
+    candidates.unfinished = candidates.turns >= GRIDWALK_TURNS;
+    candidates.turns += 1u;
+    if (candidates.unfinished) {
+        candidates.searching = false;
+    } else if (candidates.walk.reference < candidates.walk.list_end) {
+        uint triangle = References(candidates.grid.references).triangle[candidates.walk.reference];
+        candidates.walk.reference += 1u;
+        float u;
+        float v;
+        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)) {
+            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
+            return true;
+        }
+    } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {
+        candidates.searching = false;
+    }
+    return false;
+}
+
 // Finds the next candidate; false when there is none, and from then on.
 bool gridwalk_next(inout GridwalkCandidates candidates) {
     while (candidates.searching) {
-        if (candidates.turns >= GRIDWALK_TURNS) {
-            candidates.unfinished = true;
-            break;
-        }
-        candidates.turns += 1u;
-        if (candidates.walk.reference < candidates.walk.list_end) {
-            uint triangle = References(candidates.grid.references).triangle[candidates.walk.reference];
-            candidates.walk.reference += 1u;
-            float u;
-            float v;
-            if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)) {
-                candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
-                return true;
-            }
-        } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {
-            break;
+        if (gridwalk_turn(candidates)) {
+            return true;
         }
     }
-    candidates.searching = false;
     return false;
 }
 
@@ -453,8 +465,11 @@ Hit gridwalk_committed(GridwalkCandidates candidates) {
 
 Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) {
     GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
-    while (gridwalk_next(candidates)) {
-        gridwalk_commit(candidates);
+    // One loop, in which all invocations take their turns together: see GRIDWALK_TURNS.
+    while (candidates.searching) {
+        if (gridwalk_turn(candidates)) {
+            gridwalk_commit(candidates);
+        }
     }
     return gridwalk_committed(candidates);
 }

@@ -7,14 +7,7 @@ use crate::twin::closest_hit::Launch;
 use crate::walk::{Counters, Grid, Observer, walk_begin, walk_restore, walk_run, walk_save};
 
 /// One invocation; true if the walk was given up and is to be continued.
-pub fn any_hit_of(
-    grid: &Grid,
-    ray: &Ray,
-    occluded: &mut u32,
-    saved: &mut WalkState,
-    launch: Launch,
-    observer: &mut impl Observer,
-) -> bool {
+pub fn any_hit_of(grid: &Grid, ray: &Ray, occluded: &mut u32, saved: &mut WalkState, launch: Launch, observer: &mut impl Observer) -> bool {
     if launch.continues && saved.given_up == 0 {
         return false;
     }
@@ -32,7 +25,7 @@ pub fn any_hit_of(
         if given_up && launch.last {
             result = UNFINISHED;
         } else if given_up {
-            *saved = walk_save(&walk);
+            *saved = walk_save(&walk, grid);
         }
     }
     if !given_up || launch.last {

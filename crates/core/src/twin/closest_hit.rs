@@ -62,7 +62,7 @@ pub fn closest_hit_of(grid: &Grid, ray: &Ray, slot: &mut Slot, launch: Launch, o
         if given_up && launch.last {
             hit = Hit { triangle: UNFINISHED, ..Hit::MISS };
         } else if given_up {
-            slot.walk = walk_save(&walk);
+            slot.walk = walk_save(&walk, grid);
         } else if walk.best_triangle != Hit::MISS.triangle {
             let best = Intersection { s: walk.best_s, u: walk.best_u, v: walk.best_v };
             hit = Hit { t: hit_distance(&moved, ray, best.s), u: best.u, v: best.v, triangle: walk.best_triangle };

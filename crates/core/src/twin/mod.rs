@@ -1,15 +1,19 @@
-//! Every kernel of the rebuild on the CPU, and a player of whole plans. A twin walks the workgroups of its kernel's dispatch, over slices
+//! Every kernel on the CPU, and a player of whole plans. A twin walks the workgroups of its kernel's dispatch, over slices
 //! in place of memory, and leaves the same words: integers always, floats where the kernel adds, subtracts, multiplies, compares and
 //! rounds down, which every device does alike. The sign of a zero is left open where a minimum or maximum chooses between two.
 
+pub mod any_hit;
 pub mod bounds_reduce;
 pub mod bounds_spine;
 pub mod brick_distance_x;
 pub mod brick_distance_y;
 pub mod brick_distance_z;
 pub mod brick_reduce;
+pub mod brute_force;
 pub mod cell_ranges;
 pub mod clear_cells;
+pub mod closest_candidate;
+pub mod closest_hit;
 pub mod configure;
 pub mod overlap_count;
 pub mod overlap_emit;
@@ -21,3 +25,5 @@ pub mod scan_reduce;
 pub mod scan_spine;
 pub mod sort_histogram;
 pub mod sort_scatter;
+pub mod trace_args;
+pub mod trace_continue_args;
