@@ -104,7 +104,7 @@ impl Session {
     pub fn finish(self, mut run: Run, reports: &high::Reports) -> Result<Exit> {
         let mut exit = Exit::Ok;
         if run.unfinished > 0 {
-            tracing::warn!("{} rays were given up: too many triangles lie along them; try --density or --overlap exact", run.unfinished);
+            tracing::warn!("{} rays were given up: too many triangles lie along them; try another --density", run.unfinished);
             exit = Exit::Difference;
         }
         if self.device.validate {

@@ -106,9 +106,9 @@ pub struct Grid {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Overlap {
-    /// By the triangle's box: cheap to build
+    /// By the triangle's box: a little cheaper to build
     Box,
-    /// By the triangle itself: shorter lists
+    /// By the triangle itself: shorter lists (the default)
     Exact,
 }
 
