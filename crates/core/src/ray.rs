@@ -11,7 +11,7 @@ pub const UNFINISHED: u32 = 0xFFFF_FFFE;
 /// A ray: the points `origin + t * direction` for `t` in the closed interval [`t_min`, `t_max`].
 ///
 /// The direction has any length but zero, and `t` counts in its units. A ray with a NaN anywhere, or with an infinite origin or
-/// direction, misses; `t_max` may be infinite.
+/// direction, misses; `t_max` may be infinite. A device may take a direction for zero whose components are all denormal.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Ray {

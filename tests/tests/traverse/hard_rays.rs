@@ -69,12 +69,14 @@ fn the_length_of_a_direction_is_the_unit_of_t() {
         // An interval's end or an edge may round either way.
         assert!(different.len() <= 2, "directions times {factor}: {} of {} rays", different.len(), rays.len());
     }
-    // Denormal directions: what is left of their digits decides, but they end, and hit what the twin hits.
+    // Denormal directions: what is left of their digits decides, and they hit what the twin hits; but a device may take them for zero.
     let copy = built.copy();
     let denormal: Vec<_> =
         rays.iter().map(|r| Ray { t_min: 0.0, t_max: f32::INFINITY, direction: scaled(r.direction, 1e-41), ..*r }).collect();
     if gpu.context.is_cpu() {
-        assert_eq!(differences(&gpu.closest(&built, &denormal), &twins::closest_hits(&copy.view(), &denormal)), [0; 0]);
+        let found = gpu.closest(&built, &denormal);
+        let flushed = found.iter().all(|hit| !hit.is_hit());
+        assert!(flushed || differences(&found, &twins::closest_hits(&copy.view(), &denormal)).is_empty());
     }
 }
 

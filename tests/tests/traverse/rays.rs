@@ -124,8 +124,8 @@ pub fn hard_rays(mesh: &Mesh, header: &GridHeader, seed: u64) -> Vec<Ray> {
     let mut random = Random::new(seed);
     let mut directions = axis_directions();
     directions.extend((0..10).map(|_| random.direction()));
-    // A component that is negligible, one that is not, and one that is hardly larger than a denormal.
-    for tiny in [1e-13, 1e-10, 1e-38_f32] {
+    // Components that are negligible or not. None is so small that a device which flushes denormals would decide ties otherwise.
+    for tiny in [1e-13, 1e-10, 1e-30_f32] {
         directions.push([1.0, tiny, 0.0]);
         directions.push([-tiny, -1.0, tiny]);
         directions.push([tiny, 0.5, -1.0]);
