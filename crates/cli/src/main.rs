@@ -34,11 +34,20 @@ fn main() -> ExitCode {
     let exit = match messages::install(&cli.global).and_then(|()| run(cli)) {
         Ok(exit) => exit,
         Err(failure) => {
-            tracing::error!("{:#}", failure.error);
+            tracing::error!("{}", sentence(&failure.error));
             failure.exit
         }
     };
     exit.code().into()
+}
+
+/// An error and its causes in one line. A cause that the sentence before already tells is not told again.
+fn sentence(error: &anyhow::Error) -> String {
+    error
+        .chain()
+        .map(ToString::to_string)
+        .reduce(|said, cause| if said.contains(&cause) { said } else { format!("{said}: {cause}") })
+        .unwrap_or_default()
 }
 
 fn run(cli: Cli) -> Result<Exit> {

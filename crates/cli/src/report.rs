@@ -30,6 +30,13 @@ pub struct Step {
     pub ms: f64,
 }
 
+/// A part of the grid's memory, or of the memory that builds it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Buffer {
+    pub name: &'static str,
+    pub bytes: u64,
+}
+
 /// One run of `render` or `cast`. Times are those of the device, in milliseconds; medians when the run was repeated. A device without
 /// timestamps leaves them out.
 #[derive(Clone, Debug, Serialize)]
@@ -51,6 +58,7 @@ pub struct Run {
     pub longest_list: u64,
     pub grid_bytes: u64,
     pub scratch_bytes: u64,
+    pub buffers: Vec<Buffer>,
     pub build_ms: Option<f64>,
     pub build_steps: Vec<Step>,
     pub rays: u64,
@@ -115,6 +123,7 @@ impl Run {
             ("grid".to_owned(), mib(self.grid_bytes)),
             ("scratch".to_owned(), mib(self.scratch_bytes)),
         ];
+        rows.extend(self.buffers.iter().map(|buffer| (format!("  {}", buffer.name), mib(buffer.bytes))));
         rows.push(("build".to_owned(), ms(self.build_ms)));
         for step in &self.build_steps {
             rows.push((format!("  {}", step.name), format!("{}  {}", ms(Some(step.ms)), step.kind)));

@@ -9,7 +9,7 @@ use gridwalk_render::{BuildSettings, Context, ContextDesc, GpuScene, Grid, GridB
 use crate::args::{high, low};
 use crate::exit::{Exit, Result};
 use crate::output;
-use crate::report::{self, Header, Run, Step};
+use crate::report::{self, Buffer, Header, Run, Step};
 
 /// A scene on a device, under a grid.
 pub struct Session {
@@ -68,6 +68,7 @@ impl Session {
     pub fn report(&self, command: &str, source: &high::Source, repeat: Option<u32>) -> Run {
         let info = self.context.device_info();
         let stats = self.grid.stats();
+        let parts = self.grid.tracer().map(|tracer| tracer.memory_parts(self.grid.capacity()).to_vec()).unwrap_or_default();
         Run {
             header: Header::new(command),
             scene: source.name(),
@@ -85,6 +86,7 @@ impl Session {
             longest_list: stats.report.longest_list.into(),
             grid_bytes: stats.grid_bytes,
             scratch_bytes: stats.scratch_bytes,
+            buffers: parts.into_iter().map(|(name, bytes)| Buffer { name, bytes }).collect(),
             build_ms: self.build_ms,
             build_steps: self.build_steps.clone(),
             rays: 0,

@@ -1,7 +1,7 @@
 //! The grid that a scene would get, reckoned on the CPU: for a look at a scene where no device is at hand.
 
 use gridwalk::gridwalk_core::layout::Bounds;
-use gridwalk::gridwalk_core::overlap::triangle_cells;
+use gridwalk::gridwalk_core::overlap::{triangle_cells, triangle_overlaps_cell};
 use gridwalk::gridwalk_core::twin::configure::{Configure, configure_header};
 use gridwalk::{Capacity, Overlap, Shape, region_bytes};
 use gridwalk_scene::Scene;
@@ -18,8 +18,10 @@ pub struct GridEstimate {
     pub density: f32,
     /// All cells.
     pub cells: u32,
-    /// Cells in the boxes of all triangles: the pairs that the build makes, and with [`Overlap::Box`] those that it keeps.
+    /// Pairs of a cell and a triangle that the grid lists.
     pub pairs: u64,
+    /// Cells in the boxes of all triangles: the pairs that the build needs room for, and with [`Overlap::Box`] those that it lists.
+    pub box_pairs: u64,
     /// Bytes of the grid, with its copy of the triangles.
     pub grid_bytes: u64,
     /// Bytes that a build needs beside it.
@@ -54,17 +56,27 @@ pub fn estimate_grid(scene: &Scene, settings: &BuildSettings) -> Result<GridEsti
         exact: settings.overlap == Overlap::Exact,
     };
     let (header, density, _) = configure_header(&info, &bounds, [[0; 2]; 4]);
-    let mut pairs = 0_u64;
+    let (mut pairs, mut box_pairs) = (0_u64, 0_u64);
     for_each_triangle(scene, |corners| {
         if let Some(corners) = corners {
-            let size = triangle_cells(&header, corners.map(|corner| corner.map(|x| x * header.scale))).size();
-            pairs = pairs.saturating_add(size.iter().map(|cells| u64::from(*cells)).product());
+            let corners = corners.map(|corner| corner.map(|x| x * header.scale));
+            let cells = triangle_cells(&header, corners);
+            let size = cells.size();
+            let in_box = size.iter().map(|cells| u64::from(*cells)).product::<u64>();
+            box_pairs = box_pairs.saturating_add(in_box);
+            // A triangle meets every cell of a box of one row. More pairs than any build has room for are not worth the time.
+            let test = info.exact && size.iter().filter(|n| **n == 1).count() < 2 && box_pairs <= gridwalk::MAX_PAIRS.into();
+            let listed = match u32::try_from(in_box) {
+                Ok(count) if test => (0..count).filter(|n| triangle_overlaps_cell(&header, corners, cells.cell(*n))).count() as u64,
+                _ => in_box,
+            };
+            pairs = pairs.saturating_add(listed);
         }
     });
-    let capacity =
-        Capacity { triangles, cells: info.cell_capacity, pairs: u32::try_from(pairs).unwrap_or(u32::MAX).min(gridwalk::MAX_PAIRS) };
+    let room = u32::try_from(box_pairs).unwrap_or(u32::MAX).min(gridwalk::MAX_PAIRS);
+    let capacity = Capacity { triangles, cells: info.cell_capacity, pairs: room };
     let (grid_bytes, scratch_bytes) = region_bytes(&capacity, &Shape::GPU);
-    Ok(GridEstimate { resolution: header.resolution, density, cells: header.cell_count, pairs, grid_bytes, scratch_bytes })
+    Ok(GridEstimate { resolution: header.resolution, density, cells: header.cell_count, pairs, box_pairs, grid_bytes, scratch_bytes })
 }
 
 /// Every triangle's corners; `None` for one that the build drops.

@@ -63,6 +63,10 @@ fn render() {
     assert!(json["rays"].as_u64().unwrap() >= 32 * 24 * 4);
     let cells: u64 = json["resolution"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).product();
     assert_eq!(json["cells"].as_u64(), Some(cells));
+    // Parts are rounded up to the alignment of 64 bytes each.
+    let parts: Vec<u64> = json["buffers"].as_array().unwrap().iter().map(|part| part["bytes"].as_u64().unwrap()).collect();
+    let (sum, whole) = (parts.iter().sum::<u64>(), json["grid_bytes"].as_u64().unwrap() + json["scratch_bytes"].as_u64().unwrap());
+    assert!(sum <= whole && whole <= sum + 64 * parts.len() as u64, "{parts:?} come to {sum}, not to {whole}");
     let kinds: BTreeSet<&str> = json["build_steps"].as_array().unwrap().iter().map(|step| step["kind"].as_str().unwrap()).collect();
     assert!(kinds.is_subset(&BTreeSet::from(["map", "cooperative"])), "{kinds:?}");
 

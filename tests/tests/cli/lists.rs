@@ -65,6 +65,28 @@ fn help_and_version_are_results() {
     }
 }
 
+/// The help texts are written by hand, the defaults are not.
+#[test]
+fn help_tells_the_defaults() {
+    let folder = folder();
+    let settings = gridwalk_render::RenderSettings::default();
+    let help = gridwalk(folder.path(), words("render --help")).expect(0).text();
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    for (option, default) in [
+        ("--size <WxH>", format!("{}x{}", settings.width, settings.height)),
+        ("--spp <N>", settings.spp.to_string()),
+        ("--depth <N>", settings.depth.to_string()),
+        ("--density <K>", gridwalk_render::BuildSettings::default().density.to_string()),
+        ("--tonemap <NAME>", gridwalk_render::image::Tonemap::default().name().to_owned()),
+    ] {
+        let text = help.split_once(option).unwrap_or_else(|| panic!("no {option}: {help}")).1;
+        let found = text.split_once("the scene's, or ").unwrap().1.split_once(']').unwrap().0;
+        assert_eq!(found, default, "{option}");
+    }
+    let exact = help.split_once("exact: ").unwrap().1.split_once("Device:").unwrap().0;
+    assert_eq!(exact.contains("(the default)"), gridwalk_render::BuildSettings::default().overlap == gridwalk::Overlap::Exact, "{exact}");
+}
+
 #[test]
 fn information_counts_what_is_there() {
     let folder = folder();
@@ -81,15 +103,20 @@ fn information_counts_what_is_there() {
 #[test]
 fn information_foretells_the_grid() {
     let folder = folder();
-    for options in ["", "--density 40", "--resolution 7x5x3", "--density 40 --overlap exact"] {
+    for options in ["", "--density 40", "--resolution 7x5x3", "--density 40 --overlap exact", "--density 40 --overlap box"] {
         let info = gridwalk(folder.path(), words(&format!("info two.obj --json {options}"))).expect(0).json();
         let render = gridwalk(folder.path(), words(&format!("render two.obj --size 4x4 --json {options}"))).expect(0).json();
         let resolution =
             |value: &serde_json::Value| value["resolution"].as_array().unwrap().iter().map(|n| n.as_i64().unwrap()).collect::<Vec<_>>();
         let (foretold, built) = (resolution(&info["grid"]), resolution(&render));
         assert!(foretold.iter().zip(&built).all(|(a, b)| (a - b).abs() <= 1), "{options}: {foretold:?}, {built:?}");
-        if foretold == built && !options.contains("exact") {
+        let pairs = |name: &str| info["grid"][name].as_u64().unwrap();
+        if foretold == built {
             assert_eq!(info["grid"]["pairs"], render["pairs"], "{options}");
+        }
+        assert!(pairs("pairs") <= pairs("box_pairs"), "{options}");
+        if options.contains("40") {
+            assert_eq!(pairs("pairs") == pairs("box_pairs"), options.contains("box"), "{options}: exact overlap lists fewer");
         }
     }
     std::fs::write(folder.path().join("empty.obj"), "v 0 0 0\n").unwrap();

@@ -35,7 +35,9 @@ fn what_cannot_be_written_is_status_7() {
         ("none/a.exr", &["none/a.exr", "make the folder first"]),
         ("kept.png --overwrite never", &["kept.png exists"]),
     ] {
-        gridwalk(folder.path(), words(&format!("render two.obj --size 8x8 -o {output}"))).fails(7, said);
+        let run = gridwalk(folder.path(), words(&format!("render two.obj --size 8x8 -o {output}")));
+        assert_eq!(run.stderr.matches("not found").count().max(1), 1, "the system's words are told once: {}", run.stderr);
+        run.fails(7, said);
     }
     assert_eq!(fs::read(folder.path().join("kept.png")).unwrap(), b"theirs");
     assert_eq!(entries(folder.path()), ["folder.png", "kept.png", "two.obj"]);

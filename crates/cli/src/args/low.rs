@@ -9,7 +9,7 @@ use crate::exit;
 
 /// Renders scenes and casts rays through a uniform grid that is built, every time, on any Vulkan device.
 #[derive(Debug, Parser)]
-#[command(name = "gridwalk", version, about, after_help = exit::HELP, max_term_width = 110, disable_help_subcommand = true, args_override_self = true, propagate_version = true)]
+#[command(name = "gridwalk", version, after_help = exit::HELP, max_term_width = 110, disable_help_subcommand = true, args_override_self = true, propagate_version = true)]
 pub struct Cli {
     #[command(flatten)]
     pub global: Global,
@@ -62,18 +62,22 @@ Examples:
   gridwalk render bunny.obj --azimuth 90 --zoom 2 --heatmap steps --stats";
 
 const CAST_EXAMPLES: &str = "\
-RAYS.npy holds float32 of shape (N, 6): origin x y z, direction x y z; or (N, 8): and then t_min, t_max.
-HITS.npz holds t_hit float32 (inf on a miss), primitive_ids and geometry_ids uint32 (4294967295 on a miss; primitives count in file
-order within their geometry), primitive_uvs float32 (N, 2), primitive_normals float32 (N, 3); with --occlusion it holds occluded alone.
-Materials do not matter: a triangle with holes in its texture is hit all over.
+RAYS.npy holds float32 of shape (N, 6): origin x y z, direction x y z; or
+(N, 8): and then t_min, t_max.
+HITS.npz holds t_hit float32 (inf on a miss), primitive_ids and geometry_ids
+uint32 (4294967295 on a miss; primitives count in file order within their
+geometry), primitive_uvs float32 (N, 2), primitive_normals float32 (N, 3);
+with --occlusion it holds occluded alone. Materials do not matter: a triangle
+with holes in its texture is hit all over.
 
 Examples:
   gridwalk cast scene.obj --rays rays.npy -o hits.npz
   gridwalk cast scene.obj --rays rays.npy --occlusion -o occluded.npz --repeat 10 --stats";
 
 const DIFF_EXAMPLES: &str = "\
-PNGs are compared in the values they store, over 255; EXRs in linear light, layer by layer. The status is 1 when the metric is beyond the
-threshold in some layer, or a layer is in one picture only.
+PNGs are compared in the values they store, over 255; EXRs in linear light,
+layer by layer. The status is 1 when the metric is beyond the threshold in
+some layer, or a layer is in one picture only.
 
 Examples:
   gridwalk diff a.png b.png
@@ -93,7 +97,7 @@ pub struct Device {
 /// How the grid is built.
 #[derive(Args, Clone, Debug)]
 pub struct Grid {
-    /// Cells a triangle that the grid aims at
+    /// Cells a triangle that the grid aims at [default: the scene's, or 8]
     #[arg(long, value_name = "K", value_parser = positive, conflicts_with = "resolution", help_heading = "Grid")]
     pub density: Option<f32>,
     /// Cells along each axis, instead of by density
@@ -149,7 +153,7 @@ pub struct Render {
     /// Whether a file that exists is replaced
     #[arg(long, value_name = "WHEN", default_value = "always", help_heading = "Output")]
     pub overwrite: Overwrite,
-    /// Pixels
+    /// Pixels [default: the scene's, or 1024x768]
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Output")]
     pub size: Option<Extent>,
     /// Render a part alone, from its upper left corner
@@ -164,17 +168,17 @@ pub struct Render {
     /// Write the cost of each pixel's camera ray as colours, with a legend, instead of the picture
     #[arg(long, value_name = "COUNT", help_heading = "Output")]
     pub heatmap: Option<Heatmap>,
-    /// Stops by which the PNG is brightened
+    /// Stops by which the PNG is brightened [default: the scene's, or 0]
     #[arg(long, value_name = "EV", value_parser = finite, allow_hyphen_values = true, help_heading = "Output")]
     pub exposure: Option<f32>,
-    /// How the PNG brings bright light into its range: see --list-tonemaps
+    /// How the PNG brings bright light into its range: see --list-tonemaps [default: the scene's, or none]
     #[arg(long, value_name = "NAME", help_heading = "Output")]
     pub tonemap: Option<String>,
 
-    /// Samples a pixel
+    /// Samples a pixel [default: the scene's, or 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Quality")]
     pub spp: Option<u32>,
-    /// Reflections that are followed
+    /// Reflections that are followed [default: the scene's, or 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=64), help_heading = "Quality")]
     pub depth: Option<u32>,
 
@@ -239,7 +243,7 @@ impl Heatmap {
 /// Where the picture is taken from. Without any of these the scene's own first camera is used, or one that shows everything.
 #[derive(Args, Clone, Debug)]
 pub struct View {
-    /// A camera of the scene, by name or number
+    /// A camera of the scene, by name or number [default: the one that the scene prefers, or one that shows everything]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "azimuth", "elevation", "zoom"], help_heading = "Camera")]
     pub camera: Option<String>,
     /// Position

@@ -38,6 +38,7 @@ struct Grid {
     density: f32,
     cells: u32,
     pairs: u64,
+    box_pairs: u64,
     grid_bytes: u64,
     scratch_bytes: u64,
 }
@@ -61,6 +62,7 @@ pub fn run(low: &Info) -> Result<Exit> {
             density: grid.density,
             cells: grid.cells,
             pairs: grid.pairs,
+            box_pairs: grid.box_pairs,
             grid_bytes: grid.grid_bytes,
             scratch_bytes: grid.scratch_bytes,
         });
