@@ -1,11 +1,15 @@
 # Sourced by tools/quickstart, tools/test and .ci/run: finds what the machine lacks, says it, installs it with apt. POSIX sh.
 
+# A runner may start without it. The password file knows.
+: "${HOME:=$(getent passwd "$(id -u)" | cut -d : -f 6)}"
+export HOME
+
 say() { printf '%s\n' "$*" >&2; }
 die() { say "$*"; exit 1; }
 
 # Rust of at least the version that Cargo.toml asks for. Never installed from here: how to is the user's choice.
 need_rust() {
-    if ! command -v cargo >/dev/null 2>&1 && [ -f "${HOME:-/root}/.cargo/env" ]; then . "${HOME:-/root}/.cargo/env"; fi
+    if ! command -v cargo >/dev/null 2>&1 && [ -f "$HOME/.cargo/env" ]; then . "$HOME/.cargo/env"; fi
     wanted=$(sed -n 's/^rust-version *= *"\(.*\)"/\1/p' Cargo.toml | head -n 1)
     command -v cargo >/dev/null 2>&1 || die "Rust $wanted or later is needed, and no cargo was found. https://rustup.rs says how to install it."
     found=$(rustc --version | cut -d ' ' -f 2)
@@ -18,7 +22,7 @@ has_library() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q "
 # A Vulkan driver is there if a manifest of one is, or if the environment names one.
 has_driver() {
     [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] && return 0
-    for folder in /usr/share/vulkan/icd.d /usr/local/share/vulkan/icd.d /etc/vulkan/icd.d "${HOME:-/root}/.local/share/vulkan/icd.d"; do
+    for folder in /usr/share/vulkan/icd.d /usr/local/share/vulkan/icd.d /etc/vulkan/icd.d "$HOME/.local/share/vulkan/icd.d"; do
         for manifest in "$folder"/*.json; do [ -e "$manifest" ] && return 0; done
     done
     return 1
