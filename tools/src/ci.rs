@@ -49,7 +49,7 @@ const STEPS: [Step; 10] = [
     Step { name: "spirv-val", about: "every committed SPIR-V module is valid", run: spirv_val },
     Step { name: "matrix", about: "lavapipe's vector widths and thread counts: the tests pass on each", run: matrix },
     Step { name: "pictures", about: "the same: four pictures are equal bit for bit", run: pictures },
-    Step { name: "swiftshader", about: "the tests and the blessed pictures pass on SwiftShader, under a current validation layer", run: swiftshader },
+    Step { name: "swiftshader", about: "the same tests and pictures pass on SwiftShader, under a current layer", run: swiftshader },
     Step { name: "test", about: "the whole suite, under the validation layers", run: test },
 ];
 
