@@ -6,17 +6,17 @@ use crate::kernel::Kernel;
 /// with short ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
-    /// Invocations a workgroup of the map kernels.
+    /// Invocations a workgroup of the map kernels; no size of a workgroup is above 256.
     pub map_size: u32,
     /// Invocations a workgroup of the reductions and the scan; a power of two.
     pub scan_size: u32,
-    /// Elements an invocation of the scan.
+    /// Elements an invocation of the scan; no number of elements an invocation is above 65,536.
     pub scan_items: u32,
     /// Triangles an invocation of the scene box's reduction.
     pub reduce_items: u32,
     /// Bricks an invocation of `brick_reduce`.
     pub reduce_bricks: u32,
-    /// Bits a digit of the sort.
+    /// Bits a digit of the sort, at least 4; 2^`sort_bits` <= 8 * `sort_size` * `sort_keys`.
     pub sort_bits: u32,
     /// Invocations a workgroup of the sort; 2^`sort_bits` * `sort_size` <= 4,096.
     pub sort_size: u32,
@@ -52,6 +52,21 @@ impl Shape {
         sort_keys: 16,
         emit_pairs: 16,
     };
+
+    /// Whether the fields keep to what is said of them: kernels cut otherwise would not fit into shared memory, or give wrong results.
+    pub fn is_valid(&self) -> bool {
+        let sizes = [self.map_size, self.scan_size, self.sort_size];
+        let items = [self.scan_items, self.reduce_items, self.reduce_bricks, self.sort_keys, self.emit_pairs];
+        let digits = |bits: u32| 1_u32 << bits;
+        sizes.iter().all(|size| (1..=256).contains(size))
+            && items.iter().all(|items| (1..=65_536).contains(items))
+            && self.scan_size.is_power_of_two()
+            // Fewer bits need more passes than a plan records.
+            && (4..=12).contains(&self.sort_bits)
+            && digits(self.sort_bits) * self.sort_size <= 4096
+            // The digit table of 2^28 pairs stays below 2^31 entries.
+            && digits(self.sort_bits) <= 8 * self.sort_tile()
+    }
 
     /// Elements a workgroup of the scan.
     pub const fn scan_tile(&self) -> u32 {
@@ -109,6 +124,32 @@ impl Shape {
                 self.scan_size
             }
             _ => self.map_size,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shape;
+
+    #[test]
+    fn shapes_that_cannot_be() {
+        let (cpu, gpu) = (Shape::CPU, Shape::GPU);
+        assert!(cpu.is_valid() && gpu.is_valid());
+        assert!(Shape { sort_size: 4, sort_keys: 1, ..gpu }.is_valid());
+        let wrong = [
+            Shape { map_size: 0, ..cpu },
+            Shape { map_size: 257, ..cpu },
+            Shape { scan_size: 24, ..cpu },
+            Shape { scan_items: 0, ..cpu },
+            Shape { emit_pairs: 65_537, ..gpu },
+            Shape { sort_bits: 3, ..gpu },
+            Shape { sort_bits: 32, ..gpu },
+            Shape { sort_bits: 5, ..gpu },
+            Shape { sort_bits: 8, sort_size: 1, sort_keys: 31, ..cpu },
+        ];
+        for shape in wrong {
+            assert!(!shape.is_valid(), "{shape:?}");
         }
     }
 }

@@ -8,11 +8,11 @@ use crate::ray::MISS;
 use crate::vector::{Vec3, add, max, max_f32, min, min_f32, mul, sub};
 
 /// Turns of a walk in one dispatch, after which it is given up.
-pub const TURNS: u32 = 819;
+pub const TURNS: u32 = 1310;
 /// Cells visited in a turn.
-pub const STEPS_EACH_TURN: u32 = 8;
+pub const STEPS_EACH_TURN: u32 = 4;
 /// Triangles tested in a turn.
-pub const TESTS_EACH_TURN: u32 = 31;
+pub const TESTS_EACH_TURN: u32 = 20;
 /// Turns of a walk through the public include.
 pub const GRIDWALK_TURNS: u32 = 32_768;
 /// Added to the distance of a boundary that the ray does not move towards.

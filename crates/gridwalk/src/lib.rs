@@ -101,7 +101,9 @@ pub use error::{Error, Result};
 pub use gridwalk_core;
 pub use gridwalk_core::{Hit, MISS, Ray, Report, UNFINISHED, kernel};
 pub use shape::{Shape, split_workgroups};
-pub use sizes::{BuildSizes, Capacity, MAX_CELLS, MAX_PAIRS, MAX_RAYS, MAX_TRIANGLES, REGION_ALIGNMENT, RegionSize, region_bytes};
+pub use sizes::{
+    BuildSizes, Capacity, MAX_CELLS, MAX_PAIRS, MAX_RAYS, MAX_TRIANGLES, MAX_VERTICES, REGION_ALIGNMENT, RegionSize, region_bytes,
+};
 pub use sync::{Access, cmd_barrier};
 pub use tracer::{BuildInfo, BuildOptions, DeviceDesc, Geometry, Overlap, RayCount, Region, Timestamps, TraceInfo, Tracer};
 

@@ -38,7 +38,7 @@ pub struct Features {
 /// Looks at a physical device.
 ///
 /// # Safety
-/// The handles are valid and of each other; the instance was created for Vulkan 1.1 or later.
+/// The handles are valid and of each other; the instance was created for Vulkan 1.3 or later.
 pub unsafe fn query(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Found {
     // SAFETY: the caller's contract.
     let properties = unsafe { instance.get_physical_device_properties(physical_device) };

@@ -23,6 +23,8 @@ pub const MAX_TRIANGLES: u32 = 1 << 26;
 pub const MAX_CELLS: u32 = 1 << 28;
 /// Most pairs of a grid.
 pub const MAX_PAIRS: u32 = 1 << 28;
+/// Most vertices of a geometry: SPIR-V takes indices as signed, and the last float of the last vertex must be below 2^31.
+pub const MAX_VERTICES: u32 = 1 << 29;
 /// Most rays of a trace.
 pub const MAX_RAYS: u32 = 1 << 28;
 

@@ -11,7 +11,7 @@ use crate::plan::{self, Buffer, BuildInputs, Dispatch, Item, MAX_PUSH, Query, St
 use crate::requirements;
 use crate::shape::Shape;
 use crate::sizes::{
-    self, BuildSizes, Capacity, GridLayout, MAX_RAYS, REGION_ALIGNMENT, REPORT_SIZE, RegionSize, ScratchLayout, TraceLayout,
+    self, BuildSizes, Capacity, GridLayout, MAX_RAYS, MAX_VERTICES, REGION_ALIGNMENT, REPORT_SIZE, RegionSize, ScratchLayout, TraceLayout,
 };
 use crate::sync::{Access, SHADER, cmd_barrier};
 
@@ -59,7 +59,7 @@ impl Region {
 pub struct Geometry {
     /// Three `f32` a vertex, tightly packed.
     pub positions: Region,
-    /// Vertices in `positions`; a triangle with an index beyond is dropped.
+    /// Vertices in `positions`, at most [`crate::MAX_VERTICES`]; a triangle with an index beyond is dropped.
     pub vertex_count: u32,
     /// Three `u32` a triangle, tightly packed.
     pub indices: Region,
@@ -209,7 +209,7 @@ impl Tracer {
     /// Makes the pipelines.
     ///
     /// # Errors
-    /// [`Error::Unsuitable`] names all that the physical device lacks; [`Error::Vulkan`].
+    /// [`Error::Unsuitable`] names all that the physical device lacks; [`Error::Option`] for a shape that cannot be; [`Error::Vulkan`].
     ///
     /// # Safety
     /// The handles are valid, and of each other. The device has the features of [`requirements`] enabled and outlives the tracer. All work
@@ -221,6 +221,9 @@ impl Tracer {
             return Err(Error::Unsuitable { missing: found.missing });
         }
         let shape = desc.shape.unwrap_or(if found.is_cpu { Shape::CPU } else { Shape::GPU });
+        if !shape.is_valid() {
+            return Err(Error::Option { option: "shape", value: format!("{shape:?}"), expected: "sizes within the bounds of its fields" });
+        }
         let device = desc.device.clone();
         let range = vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(MAX_PUSH as u32);
         let layout_info = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(std::slice::from_ref(&range));
@@ -374,13 +377,14 @@ impl Tracer {
                 expected: "at least one cell along each axis",
             });
         }
-        if geometry.vertex_count > 1 << 30 {
-            return Err(Error::Capacity { what: "vertices", given: geometry.vertex_count.into(), limit: 1 << 30 });
+        if geometry.vertex_count > MAX_VERTICES {
+            return Err(Error::Capacity { what: "vertices", given: geometry.vertex_count.into(), limit: MAX_VERTICES.into() });
         }
         let grid = GridLayout::new(capacity);
         let scratch = ScratchLayout::new(capacity, &self.shape);
         check_region("grid", &info.grid, grid.size, REGION_ALIGNMENT)?;
         check_region("scratch", &info.scratch, scratch.size, REGION_ALIGNMENT)?;
+        check_indirect("scratch", &info.scratch)?;
         check_region("report", &info.report, REPORT_SIZE, REGION_ALIGNMENT)?;
         check_region("positions", &geometry.positions, u64::from(geometry.vertex_count) * 12, 4)?;
         check_region("indices", &geometry.indices, u64::from(geometry.triangle_count) * 12, 4)?;
@@ -510,9 +514,11 @@ impl Tracer {
             return Err(Error::Capacity { what: "rays", given: max.into(), limit: MAX_RAYS.into() });
         }
         let layout = TraceLayout::new(max);
+        check_address("grid", grid, REGION_ALIGNMENT)?;
         check_region("rays", &info.rays, u64::from(max) * 32, 16)?;
         check_region("hits", &info.hits, u64::from(max) * hit_size, hit_size.min(16))?;
         check_region("trace scratch", &info.scratch, layout.size, REGION_ALIGNMENT)?;
+        check_indirect("trace scratch", &info.scratch)?;
         let count = match info.count {
             RayCount::Direct(_) => Region::NONE,
             RayCount::Indirect { count, .. } => {
@@ -663,8 +669,23 @@ fn check_region(name: &'static str, region: &Region, size: u64, alignment: u64) 
     if region.size < size {
         return Err(Error::Region { region: name, reason: format!("{} bytes where {size} are needed", region.size) });
     }
-    if size > 0 && (region.address == 0 || !region.address.is_multiple_of(alignment)) {
-        return Err(Error::Region { region: name, reason: format!("address {:#x} is not a multiple of {alignment}", region.address) });
+    if size > 0 { check_address(name, region.address, alignment) } else { Ok(()) }
+}
+
+/// Indirect dispatches name their arguments by buffer and offset, everything else by address.
+fn check_indirect(name: &'static str, region: &Region) -> Result<()> {
+    if region.buffer == vk::Buffer::null() || !region.offset.is_multiple_of(4) {
+        return Err(Error::Region {
+            region: name,
+            reason: format!("no buffer, or an offset of {} that is not a multiple of 4", region.offset),
+        });
+    }
+    Ok(())
+}
+
+fn check_address(name: &'static str, address: vk::DeviceAddress, alignment: u64) -> Result<()> {
+    if address == 0 || !address.is_multiple_of(alignment) {
+        return Err(Error::Region { region: name, reason: format!("address {address:#x} is 0 or not a multiple of {alignment}") });
     }
     Ok(())
 }
