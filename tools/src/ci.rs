@@ -54,7 +54,8 @@ const STEPS: [Step; 10] = [
 ];
 
 /// What the matrix and the second driver run: everything that computes on the device, but not the whole suite.
-const DEVICE_TESTS: [&str; 3] = ["kernels::", "rebuild::", "traverse::"];
+/// The comparisons with CPU oracles over millions of rays run once, in the whole suite: most of their time is the oracle's.
+const DEVICE_TESTS: [&str; 7] = ["kernels::", "rebuild::", "traverse::", "--skip", "traverse::real", "--skip", "traverse::watertight"];
 
 /// Runs the steps; the first failure ends it.
 pub fn run(root: &Root, arguments: &Arguments) -> Result<ExitCode> {
