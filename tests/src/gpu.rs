@@ -312,6 +312,17 @@ impl Gpu {
         error.unwrap_or_else(|| panic!("not refused: {info:?}"))
     }
 
+    /// Why a trace through the grid at an address is refused.
+    pub fn refused_trace(&self, grid: vk::DeviceAddress, info: &TraceInfo) -> gridwalk::Error {
+        let mut error = None;
+        self.submit(|cmd| {
+            // SAFETY: what is refused records nothing.
+            error = unsafe { self.tracer.cmd_closest_hit(cmd, grid, info) }.err();
+        });
+        self.check_validation();
+        error.unwrap_or_else(|| panic!("not refused: {info:?}"))
+    }
+
     /// Records a build once and submits it several times, with `between` before each but the first.
     pub fn submit_again(&self, built: &mut Built, times: usize, mut between: impl FnMut(&mut Built, usize)) {
         let device = self.context.device();

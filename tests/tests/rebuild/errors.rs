@@ -64,6 +64,8 @@ fn builds_that_are_refused() {
         ("grid", BuildInfo { grid: moved(info.grid), ..info }),
         ("scratch", BuildInfo { scratch: Region::NONE, ..info }),
         ("positions", BuildInfo { geometry: gridwalk::Geometry { vertex_count: 301, ..info.geometry }, ..info }),
+        ("vertices", BuildInfo { geometry: gridwalk::Geometry { vertex_count: gridwalk::MAX_VERTICES + 1, ..info.geometry }, ..info }),
+        ("scratch", BuildInfo { scratch: Region { buffer: Default::default(), ..info.scratch }, ..info }),
         ("indices", BuildInfo { geometry: gridwalk::Geometry { indices: shrunk(info.geometry.indices), ..info.geometry }, ..info }),
     ];
     for (name, info) in cases {
@@ -74,4 +76,35 @@ fn builds_that_are_refused() {
         let words: Vec<u32> = memory.read(0, memory.region().size as usize / 4);
         assert!(words.iter().all(|word| *word == CANARY), "a refused build wrote");
     }
+}
+
+#[test]
+fn traces_that_are_refused() {
+    let gpu = Gpu::shared();
+    let region = gpu.guarded("memory", 4096);
+    let address = region.region().address;
+    let info = gridwalk::TraceInfo {
+        rays: region.region().part(0, 32),
+        hits: region.region().part(64, 16),
+        count: gridwalk::RayCount::Direct(1),
+        scratch: region.region().part(1024, 1024),
+        resume: false,
+        counters: None,
+    };
+    let cases = [
+        ("grid", 0, info),
+        ("grid", address + 32, info),
+        ("rays", address, gridwalk::TraceInfo { rays: Region::NONE, ..info }),
+        ("rays", address, gridwalk::TraceInfo { count: gridwalk::RayCount::Direct(2), ..info }),
+        ("hits", address, gridwalk::TraceInfo { hits: info.hits.part(4, 16), ..info }),
+        ("trace scratch", address, gridwalk::TraceInfo { scratch: info.scratch.part(0, 64), ..info }),
+        ("trace scratch", address, gridwalk::TraceInfo { scratch: Region { buffer: Default::default(), ..info.scratch }, ..info }),
+        ("ray count", address, gridwalk::TraceInfo { count: gridwalk::RayCount::Indirect { count: Region::NONE, max: 1 }, ..info }),
+        ("counters", address, gridwalk::TraceInfo { counters: Some(info.hits.part(0, 8)), ..info }),
+    ];
+    for (name, grid, info) in cases {
+        let message = gpu.refused_trace(grid, &info).to_string();
+        assert!(message.contains(name), "{name}: {message}");
+    }
+    assert!(region.read::<u32>(0, 1024).iter().all(|word| *word == CANARY), "a refused trace wrote");
 }
