@@ -126,16 +126,12 @@ impl Context {
         let priorities = [1.0];
         let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(candidate.queue_family).queue_priorities(&priorities)];
         let extensions: Vec<_> = candidate.extensions.iter().map(|name| name.as_ptr()).collect();
-        let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
-            .buffer_device_address(true)
-            .timeline_semaphore(true)
-            .host_query_reset(candidate.has_host_query_reset);
-        let mut features13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
+        let mut features = gridwalk::requirements::features();
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions)
-            .push_next(&mut features12)
-            .push_next(&mut features13);
+            .push_next(&mut features.vulkan_12)
+            .push_next(&mut features.vulkan_13);
         // SAFETY: the physical device comes from this instance; features and extensions were found on it; every pointer outlives the call.
         let device = unsafe { instance.raw.create_device(candidate.handle, &info, None) }.map_err(Error::vulkan("vkCreateDevice"))?;
         let debug = instance.debug.as_ref().map(|_| ext::debug_utils::Device::new(&instance.raw, &device));

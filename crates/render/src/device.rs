@@ -208,7 +208,6 @@ pub(crate) struct Candidate {
     /// Extensions to enable: those that must be when they are there, and the memory budget.
     pub(crate) extensions: Vec<&'static CStr>,
     pub(crate) has_budget: bool,
-    pub(crate) has_host_query_reset: bool,
 }
 
 /// The Vulkan instance; destroyed with it are the messenger and, last, the loader.
@@ -312,7 +311,8 @@ impl Instance {
     }
 
     fn candidate(&self, index: usize, handle: vk::PhysicalDevice) -> Result<Candidate> {
-        let mut unsuitable = Vec::new();
+        // SAFETY: the handle comes from this instance, which was made for Vulkan 1.3.
+        let mut unsuitable = unsafe { gridwalk::requirements::query(&self.raw, handle) }.missing;
         // SAFETY: the handle comes from this instance.
         let core = unsafe { self.raw.get_physical_device_properties(handle) };
         let api =
@@ -320,23 +320,12 @@ impl Instance {
         let mut vulkan11 = vk::PhysicalDeviceVulkan11Properties::default();
         let mut vulkan12 = vk::PhysicalDeviceVulkan12Properties::default();
         let mut vulkan13 = vk::PhysicalDeviceVulkan13Properties::default();
-        let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
         if core.api_version >= vk::API_VERSION_1_3 {
             let mut properties =
                 vk::PhysicalDeviceProperties2::default().push_next(&mut vulkan11).push_next(&mut vulkan12).push_next(&mut vulkan13);
-            let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut features12);
-            // SAFETY: the handle comes from this instance; the device knows Vulkan 1.3 and so every struct of both chains.
-            unsafe {
-                self.raw.get_physical_device_properties2(handle, &mut properties);
-                self.raw.get_physical_device_features2(handle, &mut features);
-            }
-            if features12.timeline_semaphore == vk::FALSE {
-                unsuitable.push("feature timelineSemaphore".to_owned());
-            }
+            // SAFETY: the handle comes from this instance; the device knows Vulkan 1.3 and so every struct of the chain.
+            unsafe { self.raw.get_physical_device_properties2(handle, &mut properties) };
         }
-        // SAFETY: the handle comes from this instance, which was made for Vulkan 1.3.
-        unsuitable.extend(unsafe { gridwalk::requirements::query(&self.raw, handle) }.missing);
-
         // SAFETY: the handle comes from this instance.
         let families = unsafe { self.raw.get_physical_device_queue_family_properties(handle) };
         let computes = |family: &vk::QueueFamilyProperties| family.queue_flags.contains(vk::QueueFlags::COMPUTE);
@@ -403,7 +392,6 @@ impl Instance {
             queue_family: family.and_then(|family| u32::try_from(family).ok()).unwrap_or(0),
             extensions,
             has_budget,
-            has_host_query_reset: features12.host_query_reset == vk::TRUE,
         })
     }
 

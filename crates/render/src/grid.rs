@@ -341,8 +341,26 @@ pub(crate) fn cell_capacity(triangles: u32, settings: &BuildSettings) -> Result<
             if !(settings.density > 0.0 && settings.density.is_finite()) {
                 return Err(Error::Setting { setting: "density", value: settings.density.to_string(), expected: "a number above 0" });
             }
-            (f64::from(triangles) * f64::from(settings.density)).ceil() as u64 + 1
+            ((f64::from(triangles) * f64::from(settings.density)).ceil() as u64).saturating_add(1)
         }
     };
     Ok(u32::try_from(cells).unwrap_or(u32::MAX).min(MAX_CELLS))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_any_density() {
+        let cells = |triangles, density| cell_capacity(triangles, &BuildSettings { density, ..BuildSettings::default() });
+        assert!(matches!(cells(100, 2.5), Ok(251)));
+        assert!(matches!(cells(0, f32::MAX), Ok(1)));
+        for density in [1e10, 1e19, 1e30, f32::MAX] {
+            assert!(matches!(cells(1 << 26, density), Ok(MAX_CELLS)), "{density}");
+        }
+        for density in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert!(matches!(cells(1, density), Err(Error::Setting { .. })), "{density}");
+        }
+    }
 }
