@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::Layer;
-use tracing_subscriber::filter::LevelFilter;
+use tracing_subscriber::filter::{LevelFilter, filter_fn};
 use tracing_subscriber::fmt::format::Writer;
 use tracing_subscriber::fmt::{FmtContext, FormatEvent, FormatFields};
 use tracing_subscriber::layer::SubscriberExt;
@@ -16,6 +16,9 @@ use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::args::low::Global;
 use crate::exit::{Failure, Result};
+
+/// Target of messages that are told unless the program is to be quiet: what nobody could know otherwise.
+pub const RESULT: &str = "gridwalk::result";
 
 /// Directs messages to standard error, and to the log file if there is one.
 pub fn install(options: &Global) -> Result<()> {
@@ -26,7 +29,9 @@ pub fn install(options: &Global) -> Result<()> {
         (false, 2) => LevelFilter::DEBUG,
         (false, _) => LevelFilter::TRACE,
     };
-    let screen = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).event_format(Plain { color: color() }).with_filter(level);
+    let quiet = options.quiet;
+    let shown = filter_fn(move |message| *message.level() <= level || (!quiet && message.target() == RESULT));
+    let screen = tracing_subscriber::fmt::layer().with_writer(std::io::stderr).event_format(Plain { color: color() }).with_filter(shown);
     let file = options.log_file.as_ref().map(|path| File::create(path).map_err(|error| (path, error))).transpose();
     let (file, failure) = match file {
         Ok(file) => (file, None),

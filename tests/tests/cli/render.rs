@@ -7,6 +7,7 @@ fn no_option_is_needed() {
     let folder = folder();
     let run = gridwalk(folder.path(), words("render two.obj")).expect(0);
     assert!(run.stdout.is_empty());
+    assert!(run.stderr.contains("wrote two.png"), "where the picture went, which nobody asked for by name: {}", run.stderr);
     let (width, height, color, pixels) = read_png(&folder.path().join("two.png"));
     assert_eq!((width, height, color), (1024, 768, png::ColorType::Rgb));
     let middle = ((height / 2 * width + width / 2) * 3) as usize;

@@ -92,6 +92,8 @@ pub struct Render {
     pub source: Source,
     pub load: LoadOptions,
     pub outputs: Vec<Output>,
+    /// The user named the outputs.
+    pub named: bool,
     pub overwrite: Overwrite,
     pub size: Option<[u32; 2]>,
     pub crop: Option<Crop>,
@@ -151,6 +153,7 @@ impl Render {
             load: load_options(&low.limits),
             source,
             outputs,
+            named: !low.output.is_empty(),
             overwrite: overwrite(low.overwrite),
             size: low.size,
             aovs: aovs(&low.aov, low.heatmap)?,

@@ -15,7 +15,7 @@ use crate::exit::{Exit, Failure, Result};
 use crate::interrupt::Interrupt;
 use crate::report::{self, Run};
 use crate::session::Session;
-use crate::{output, progress, scene};
+use crate::{messages, output, progress, scene};
 
 /// Renders a picture of a scene, or lists what the options can be.
 pub fn run(low: low::Render, quiet: bool, interrupt: &Interrupt) -> Result<Exit> {
@@ -73,7 +73,11 @@ pub fn run(low: low::Render, quiet: bool, interrupt: &Interrupt) -> Result<Exit>
                 }
                 (_, _) => exr(&output.target, render.overwrite, frame, &metadata)?,
             }
-            tracing::info!("wrote {}", output.target.name());
+            if render.named {
+                tracing::info!("wrote {}", output.target.name());
+            } else {
+                tracing::info!(target: messages::RESULT, "wrote {}", output.target.name());
+            }
         }
         Ok(())
     })?;
