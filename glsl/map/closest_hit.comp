@@ -31,6 +31,8 @@ void main() {
     if (RESUME) {
         hit = hits.hit[index];
         moved.s_max = hit.triangle < GRIDWALK_UNFINISHED ? distance_to_s(moved, hit.t) : moved.s_max;
+        // What was not found there may be closer than all that is found here.
+        moved.valid = moved.valid && hit.triangle != GRIDWALK_UNFINISHED;
     }
     Counters seen = Counters(0u, 0u, 0u);
     bool given_up = false;

@@ -15,7 +15,6 @@ use crate::sizes::{Capacity, pass_capacity};
 #[repr(u64)]
 #[allow(missing_docs, reason = "the names are those of the kernels' push constants")]
 pub enum Buffer {
-    Unused,
     Positions,
     Indices,
     Header,
@@ -47,8 +46,7 @@ pub enum Buffer {
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 28] = [
-        Buffer::Unused,
+    pub const ALL: [Buffer; 27] = [
         Buffer::Positions,
         Buffer::Indices,
         Buffer::Header,
@@ -82,6 +80,14 @@ impl Buffer {
         self as u64
     }
 }
+
+const _: () = {
+    let mut token = 0;
+    while token < Buffer::ALL.len() {
+        assert!(Buffer::ALL[token] as usize == token);
+        token += 1;
+    }
+};
 
 /// The number of workgroups of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -163,7 +163,7 @@ pub struct TraceInfo {
     /// Memory of the trace: [`Tracer::trace_scratch_size`].
     pub scratch: Region,
     /// Closest hit only: go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are traced one
-    /// after another.
+    /// after another. A ray that is unfinished stays so.
     pub resume: bool,
     /// Closest hit only: where each ray's numbers of steps, triangle tests and cells that were not empty are written, as `uvec4`.
     pub counters: Option<Region>,
@@ -430,9 +430,7 @@ impl Tracer {
             Buffer::Occupancy => in_scratch(scratch.occupancy),
             Buffer::DistancesX => in_scratch(scratch.distances_x),
             Buffer::DistancesY => in_scratch(scratch.distances_y),
-            Buffer::Unused | Buffer::Rays | Buffer::Hits | Buffer::RayCount | Buffer::TraceState | Buffer::Walks | Buffer::Counters => {
-                Region::NONE
-            }
+            Buffer::Rays | Buffer::Hits | Buffer::RayCount | Buffer::TraceState | Buffer::Walks | Buffer::Counters => Region::NONE,
         }
     }
 

@@ -1,7 +1,7 @@
 //! How many rays: given, in memory, more than a row of workgroups holds; several grids in turn.
 
 use bytemuck::Zeroable;
-use gridwalk::{BuildOptions, Hit, Ray, Shape};
+use gridwalk::{BuildOptions, Hit, Ray, Shape, UNFINISHED};
 use gridwalk_tests::gpu::{CANARY, Gpu, TraceOptions};
 
 use super::compare::differences;
@@ -84,6 +84,10 @@ fn grids_are_traced_one_after_another() {
     let nothing = vec![Hit::MISS; rays.len()];
     let (found, _) = gpu.closest_with(&grids[0], &rays, &TraceOptions { resume: Some(&nothing), ..TraceOptions::default() });
     assert_eq!(differences(&found, &alone[0]), [0; 0]);
+    // Nobody knows what is the closest hit of a ray that was given up in an earlier grid.
+    let given_up = vec![Hit { triangle: UNFINISHED, ..Hit::MISS }; rays.len()];
+    let (found, _) = gpu.closest_with(&grids[0], &rays, &TraceOptions { resume: Some(&given_up), ..TraceOptions::default() });
+    assert_eq!(found, given_up);
 }
 
 #[test]

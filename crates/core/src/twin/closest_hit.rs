@@ -46,7 +46,9 @@ pub fn closest_hit_of(grid: &Grid, ray: &Ray, slot: &mut Slot, launch: Launch, o
         slot.counters = Counters::default();
     }
     let mut given_up = false;
-    if let Some(mut moved) = move_ray(ray, grid.header) {
+    // What was not found in an earlier grid may be closer than all that is found in this one.
+    let was_given_up = launch.resume && hit.triangle == UNFINISHED;
+    if let Some(mut moved) = move_ray(ray, grid.header).filter(|_| !was_given_up) {
         if launch.resume && hit.is_hit() {
             moved.s_max = distance_to_s(&moved, hit.t);
         }
