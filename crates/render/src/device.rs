@@ -6,7 +6,7 @@ use std::{
     ffi::{CStr, c_void},
     fmt,
     str::FromStr,
-    sync::Mutex,
+    sync::{Arc, Mutex},
 };
 
 /// Which device to take.
@@ -215,7 +215,8 @@ pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
     pub(crate) debug: Option<ext::debug_utils::Instance>,
     messenger: vk::DebugUtilsMessengerEXT,
-    pub(crate) messages: Box<Messages>,
+    /// Not a box: its pointer, which the messenger has, would not outlive a move.
+    pub(crate) messages: Arc<Messages>,
     /// Keeps the loader's library mapped for as long as its functions may be called.
     _entry: ash::Entry,
 }
@@ -269,17 +270,17 @@ impl Instance {
             flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
         }
 
-        let messages = Box::<Messages>::default();
+        let messages = Arc::<Messages>::default();
         let application =
             vk::ApplicationInfo::default().application_name(c"gridwalk").engine_name(c"gridwalk").api_version(vk::API_VERSION_1_3);
         let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
-        // The callback's pointer stays valid for the life of the instance: the box does not move, and is dropped after it.
+        // The callback's pointer stays valid for the life of the instance: what it points to does not move, and is dropped after it.
         let mut messenger_info = vk::DebugUtilsMessengerCreateInfoEXT::default()
             .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING)
             .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE)
             .pfn_user_callback(Some(collect))
-            .user_data((&raw const *messages).cast_mut().cast::<c_void>());
+            .user_data(Arc::as_ptr(&messages).cast_mut().cast::<c_void>());
         let mut info = vk::InstanceCreateInfo::default()
             .application_info(&application)
             .flags(flags)
@@ -453,7 +454,7 @@ unsafe extern "system" fn collect(
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
     user: *mut c_void,
 ) -> vk::Bool32 {
-    // SAFETY: the loader passes a valid message, and the user data is the boxed `Messages`, which outlives the instance.
+    // SAFETY: the loader passes a valid message, and the user data is the shared `Messages`, which outlives the instance.
     let (text, messages) = unsafe {
         let text = (*data).message_as_c_str().map_or_else(String::new, |text| text.to_string_lossy().into_owned());
         (text, &*user.cast_const().cast::<Messages>())

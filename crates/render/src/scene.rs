@@ -25,7 +25,7 @@ impl GpuScene {
     /// Brings a scene to the device.
     ///
     /// # Errors
-    /// [`Error::Scene`] when an index of the scene leads nowhere or a count exceeds 32 bits; [`Error::OutOfDeviceMemory`]; those of
+    /// [`Error::Scene`] when an index of the scene leads nowhere or a count exceeds what kernels can index; [`Error::OutOfDeviceMemory`]; those of
     /// [`Context::submit`].
     pub fn upload(context: &Context, scene: &Scene) -> Result<GpuScene> {
         let counts = check(scene)?;
@@ -220,17 +220,21 @@ fn check(scene: &Scene) -> Result<Counts> {
             return Err(bad(format!("material {}: texture {map} of {}", material.name, scene.textures.len())));
         }
     }
-    if texels > u64::from(u32::MAX) {
-        return Err(bad(format!("{texels} texels; 4,294,967,295 are possible")));
-    }
-    let small = |what: &str, count: u64| u32::try_from(count).map_err(|_| bad(format!("{count} {what}; 4,294,967,295 are possible")));
+    let bounded = |what: &str, count: u64, most: u32| match u32::try_from(count) {
+        Ok(count) if count <= most => Ok(count),
+        _ => Err(bad(format!("{count} {what}; {most} are possible"))),
+    };
+    bounded("texels", texels, MAX_WORDS)?;
     Ok(Counts {
-        vertices: small("vertices", vertices)?,
-        triangles: small("triangles", triangles)?,
-        lights: small("lights", scene.lights.len() as u64)?,
+        vertices: bounded("vertices", vertices, gridwalk::MAX_VERTICES)?,
+        triangles: bounded("triangles", triangles, gridwalk::MAX_TRIANGLES)?,
+        lights: bounded("lights", scene.lights.len() as u64, MAX_WORDS)?,
         texels,
     })
 }
+
+/// Words of an array that a kernel can index: SPIR-V takes indices as signed.
+const MAX_WORDS: u32 = i32::MAX as u32;
 
 fn device_material(material: &Material, textures: &[Texture]) -> layout::Material {
     let mut flags = 0;
@@ -305,7 +309,7 @@ fn device_background(background: &Background, up: [f32; 3]) -> Result<(layout::B
         }
         Background::Equirectangular { width, height, pixels, rotation_degrees } => {
             let count = u64::from(*width) * u64::from(*height);
-            if count == 0 || count != pixels.len() as u64 || count > u64::from(u32::MAX / 3) {
+            if count == 0 || count != pixels.len() as u64 || count > u64::from(MAX_WORDS / 3) {
                 return Err(Error::Scene { reason: format!("the background has {} pixels for {width} x {height}", pixels.len()) });
             }
             result.kind = layout::BACKGROUND_PANORAMA;
