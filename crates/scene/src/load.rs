@@ -18,7 +18,7 @@ use crate::{Background, Error, Light, LoadOptions, Material, Mesh, RenderDefault
 /// and textures are no errors; [`Scene::warnings`] lists them.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
     let inside = path.join("scene.toml");
-    let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
+    let path = if path.is_dir() { inside.as_path() } else { path };
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     match ending.as_deref() {
         Some("obj") => {

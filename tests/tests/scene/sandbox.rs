@@ -95,7 +95,13 @@ fn names_that_are_not_there_are_told_with_a_neighbour() {
     let error = load(&folder.path().join("teapot.xyz"), &LoadOptions::default()).unwrap_err();
     assert_eq!(without_folder(&error.to_string(), folder.path()), "DIR/teapot.xyz does not exist: did you mean teapot.obj?");
     let error = load(folder.path(), &LoadOptions::default()).unwrap_err();
-    assert_eq!(without_folder(&error.to_string(), folder.path()), "DIR: cannot tell the format by the ending; readable are .obj and .toml");
+    assert_eq!(without_folder(&error.to_string(), folder.path()), "DIR/scene.toml does not exist");
+    std::fs::write(folder.path().join("teapot.xyz"), "").unwrap();
+    let error = load(&folder.path().join("teapot.xyz"), &LoadOptions::default()).unwrap_err();
+    assert_eq!(
+        without_folder(&error.to_string(), folder.path()),
+        "DIR/teapot.xyz: cannot tell the format by the ending; readable are .obj and .toml"
+    );
 }
 
 #[cfg(unix)]
