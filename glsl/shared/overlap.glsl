@@ -24,9 +24,11 @@ CellBox overlapped_box(GridHeader grid, vec3 low, vec3 high) {
     return box;
 }
 
+// Padded twice: the invariant asks for one pad where divisions are rounded to the nearest; with those of 2.5 ulp, walk and hit may each
+// stray by up to three quarters of a pad.
 CellBox triangle_cells(GridHeader grid, vec3 v0, vec3 v1, vec3 v2) {
-    vec3 low = min(v0, min(v1, v2)) - vec3(grid.pad);
-    vec3 high = max(v0, max(v1, v2)) + vec3(grid.pad);
+    vec3 low = min(v0, min(v1, v2)) - vec3(grid.pad * 2.0);
+    vec3 high = max(v0, max(v1, v2)) + vec3(grid.pad * 2.0);
     return overlapped_box(grid, low, high);
 }
 
@@ -41,7 +43,7 @@ bool separates(vec3 axis, vec3 half_size, vec3 v0, vec3 v1, vec3 v2) {
 }
 
 // Separating axes: the triangle's normal and the nine products of an edge and a box axis; the box axes are overlapped_box's. The box is
-// padded three times: once as the invariant asks, twice for the rounding of the projections, which comes to little more than one pad.
+// padded three times: one and a half as above, the rest for the rounding of the projections, which comes to little more than one pad.
 bool triangle_overlaps_cell(GridHeader grid, vec3 v0, vec3 v1, vec3 v2, uvec3 cell) {
     vec3 low = boundary(grid.box_min, grid.cell_size, vec3(cell));
     vec3 half_size = grid.cell_size * 0.5;

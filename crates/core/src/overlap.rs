@@ -40,10 +40,10 @@ pub fn overlapped_box(grid: &GridHeader, low: Vec3, high: Vec3) -> CellBox {
     }
 }
 
-/// Cells that the padded box of a triangle overlaps.
+/// Cells that the box of a triangle, padded twice, overlaps.
 pub fn triangle_cells(grid: &GridHeader, v: [Vec3; 3]) -> CellBox {
-    let low = sub(min(v[0], min(v[1], v[2])), [grid.pad; 3]);
-    let high = add(max(v[0], max(v[1], v[2])), [grid.pad; 3]);
+    let low = sub(min(v[0], min(v[1], v[2])), [grid.pad * 2.0; 3]);
+    let high = add(max(v[0], max(v[1], v[2])), [grid.pad * 2.0; 3]);
     overlapped_box(grid, low, high)
 }
 
