@@ -360,7 +360,7 @@ impl Tracer {
     /// # Safety
     /// `cmd` is in the recording state, outside of a render pass, of a queue with compute and of the tracer's device. The regions are of that
     /// device, do not overlap, and live until the command buffer has been executed; scratch's buffer has usage `INDIRECT_BUFFER`. With
-    /// timestamps: the pool holds enough queries from the first on.
+    /// timestamps: the queue has them, and the pool holds enough queries from the first on.
     pub unsafe fn cmd_build(&self, cmd: vk::CommandBuffer, info: &BuildInfo) -> Result<()> {
         let BuildInfo { geometry, capacity, options, .. } = info;
         sizes::check_capacity(capacity)?;

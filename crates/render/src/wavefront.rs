@@ -40,15 +40,21 @@ struct Masked {
     last: Pipeline,
 }
 
+const CONTINUATIONS: usize = gridwalk::plan::CONTINUATIONS as usize;
+
 impl Masked {
     fn new(context: &Context, kernel: &'static gridwalk::kernel::Kernel) -> Result<Masked> {
         let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last)]);
         Ok(Masked { first: variant(0, 0)?, again: variant(1, 0)?, last: variant(1, 1)? })
     }
 
-    /// A walk is continued three times, as the library's own.
-    fn variants(&self) -> [&Pipeline; 4] {
-        [&self.first, &self.again, &self.again, &self.last]
+    /// A walk is continued as often as the library's own.
+    fn variants(&self) -> [&Pipeline; CONTINUATIONS + 1] {
+        std::array::from_fn(|turn| match turn {
+            0 => &self.first,
+            CONTINUATIONS => &self.last,
+            _ => &self.again,
+        })
     }
 }
 
