@@ -130,9 +130,9 @@ void main() {
     header.box_min = box_min;
     header.scale = scale;
     header.pad = pad;
+    // A walk must not leave the last cell before it leaves the box.
     header.cell_size = vec3(cell_size_for(box_min.x, box_max.x, float(resolution.x)), cell_size_for(box_min.y, box_max.y, float(resolution.y)),
                             cell_size_for(box_min.z, box_max.z, float(resolution.z)));
-    // A walk must not leave the last cell before it leaves the box.
     header.box_max = box_max;
     header.inverse_scale = power_of_two(exponent);
     header.inverse_cell_size = vec3(1.0) / header.cell_size;
