@@ -132,7 +132,7 @@ bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, ou
     vec3 e2 = c - a;
     vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
-    if (facing == 0.0) {
+    if (abs(facing) < LEAST_NORMAL) {
         return false;
     }
     float along = (normal.x * a.x + normal.y * a.y + normal.z * a.z) / facing;

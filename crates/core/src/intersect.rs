@@ -162,7 +162,7 @@ pub fn intersect_triangle(ray: &MovedRay, vertices: [Vec3; 3]) -> Option<Interse
     let e2 = sub(c, a);
     let normal = [e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]];
     let facing = normal[0] * ray.shear[0] + normal[1] * ray.shear[1] + normal[2];
-    if facing == 0.0 {
+    if facing.abs() < f32::MIN_POSITIVE {
         return None;
     }
     let along = (normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2]) / facing;

@@ -86,8 +86,11 @@
 //! ```
 
 mod error;
+#[doc(hidden)]
 pub mod hazard;
+#[doc(hidden)]
 pub mod kernels;
+#[doc(hidden)]
 pub mod plan;
 mod push;
 pub mod requirements;
