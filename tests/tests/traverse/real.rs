@@ -199,8 +199,14 @@ fn the_teapot_agrees_with_both_oracles() {
 }
 
 #[test]
-fn furniture_agrees_with_both_oracles() {
+fn a_bear_and_a_cake_agree_with_both_oracles() {
     compare(&meshes::committed("furniture/teddyBear/teddyBear.obj"));
+    compare(&meshes::committed("furniture/cupcake/cupcake.obj"));
+}
+
+#[test]
+fn furniture_agrees_with_both_oracles() {
+    compare(&meshes::committed("furniture/plantie/plantie.obj"));
     if long() {
         compare(&meshes::committed("furniture/poolTable/poolTable.obj"));
     }
