@@ -99,7 +99,7 @@ impl Default for BuildOptions {
     }
 }
 
-/// Where a build or trace writes timestamps: one before its first step and one after each.
+/// Where a build writes timestamps: one before its first step and one after each.
 #[derive(Clone, Copy, Debug)]
 pub struct Timestamps {
     /// Pool of type `TIMESTAMP`.
