@@ -23,8 +23,7 @@ layout(constant_id = 4) const bool COUNT = false;
 
 // A turn walks through empty cells to the next list, then tests triangles of it: so the invocations of a subgroup mostly do the same.
 // lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over all of its loops and over the divergent paths of
-// its subgroup: TURNS * (1 + STEPS_EACH_TURN + TESTS_EACH_TURN) = 32,750 stays below. With three continuations
-// a ray passes a row of 4,096 cells in use, the longest along an axis, and tests 100,000 triangles of one cell.
+// its subgroup: TURNS * (1 + STEPS_EACH_TURN + TESTS_EACH_TURN) = 32,750 stays below.
 const uint TURNS = 1310u;
 const uint STEPS_EACH_TURN = 4u;
 const uint TESTS_EACH_TURN = 20u;

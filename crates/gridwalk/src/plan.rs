@@ -418,8 +418,9 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     plan
 }
 
-/// Times that a trace goes on with walks that ran out of their budget before they are reported.
-pub const CONTINUATIONS: u32 = 3;
+/// Times that a trace goes on with walks that ran out of their budget before they are reported: 209,600 triangles a ray in all, or more
+/// cells in use than the longest way through any grid passes. A continuation that is not needed costs two dispatches of next to nothing.
+pub const CONTINUATIONS: u32 = 7;
 
 /// Bits of [`Step::variant`] of the trace kernels.
 pub(crate) const CONTINUE: u32 = 1;

@@ -15,9 +15,11 @@ use rayon::prelude::*;
 use super::compare::{along, cross, differences, differences_from_twin, dot, edge_on, length, sub, to_triangle};
 use super::{meshes, rays};
 
+const CONTINUATIONS: usize = gridwalk::plan::CONTINUATIONS as usize;
+
 /// The launches of a trace.
-pub fn launches(resume: bool) -> [Launch; 4] {
-    std::array::from_fn(|turn| Launch { continues: turn > 0, last: turn == 3, resume })
+pub fn launches(resume: bool) -> [Launch; CONTINUATIONS + 1] {
+    std::array::from_fn(|turn| Launch { continues: turn > 0, last: turn == CONTINUATIONS, resume })
 }
 
 /// All launches of a trace of the closest hit of one ray.
