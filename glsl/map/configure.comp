@@ -39,7 +39,16 @@ layout(push_constant, std430) uniform Configure {
 const float MAX_RESOLUTION = 4096.0;
 const float PAD = 9.5367431640625e-07; // 2^-20
 const float MIN_CELL_IN_PADS = 4.0;
+const float FAR = 4.0;
+const float LEAST_MIDDLE = 7.888609052210118e-31; // 2^-100
 const uint CELLS_EACH = 8u; // clear_cells
+
+// The middle of an interval that lies far from zero, for the scene's size. All its points are then between half and twice the middle, and
+// no difference is denormal: subtracting the middle is exact.
+float middle_for(float low, float high, float longest) {
+    float middle = 0.5 * low + 0.5 * high;
+    return abs(middle) >= max(FAR * longest, LEAST_MIDDLE) ? middle : 0.0;
+}
 
 float cells_for(vec3 relative, vec3 limit, float s) {
     vec3 cells = min(max(relative * s, vec3(1.0)), limit);
@@ -85,13 +94,18 @@ void main() {
     vec3 low = empty ? vec3(0.0) : bounds.low;
     vec3 high = empty ? vec3(0.0) : bounds.high;
 
-    vec3 magnitude = max(abs(low), abs(high));
+    vec3 size = high - low;
+    float longest = max(size.x, max(size.y, size.z));
+    vec3 middle = vec3(middle_for(low.x, high.x, longest), middle_for(low.y, high.y, longest), middle_for(low.z, high.z, longest));
+    vec3 relative_low = low - middle;
+    vec3 relative_high = high - middle;
+    vec3 magnitude = max(abs(relative_low), abs(relative_high));
     float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
     int exponent = largest > 0.0 ? clamped_exponent(largest) : 0;
     float scale = power_of_two(-exponent);
     float pad = max(largest * scale, 1.0) * PAD;
-    vec3 box_min = low * scale - vec3(pad);
-    vec3 box_max = high * scale + vec3(pad);
+    vec3 box_min = relative_low * scale - vec3(pad);
+    vec3 box_max = relative_high * scale + vec3(pad);
 
     vec3 extent = box_max - box_min;
     vec3 limit = min(max(floor(extent / (MIN_CELL_IN_PADS * pad)), vec3(1.0)), vec3(MAX_RESOLUTION));
@@ -143,6 +157,8 @@ void main() {
     header.references = uvec2(references);
     header.triangles = uvec2(triangles);
     header.bricks = uvec2(bricks);
+    header.middle = middle;
+    header.reserved = 0u;
     grid.header = header;
 
     uint largest_key = exact != 0u ? cell_count : cell_count - 1u;

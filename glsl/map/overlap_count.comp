@@ -40,9 +40,9 @@ void main() {
     vec3 v1 = vec3(0.0);
     vec3 v2 = vec3(0.0);
     if (!vertices.dropped) {
-        v0 = vertices.v0 * header.scale;
-        v1 = vertices.v1 * header.scale;
-        v2 = vertices.v2 * header.scale;
+        v0 = to_frame(header, vertices.v0);
+        v1 = to_frame(header, vertices.v1);
+        v2 = to_frame(header, vertices.v2);
         CellBox box = triangle_cells(header, v0, v1, v2);
         uvec3 size = box.high - box.low + uvec3(1u);
         count = size.x * size.y * size.z;

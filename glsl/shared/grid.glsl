@@ -1,5 +1,7 @@
-// The grid as data. Everything from the header on lives in the grid's frame: input coordinates times `scale`, a power of two chosen so
-// that the largest |coordinate| lies in [1, 2). The product is exact, and no threshold below depends on the unit of the scene.
+// The grid as data. Everything from the header on lives in the grid's frame: (input coordinate - middle) * scale. The scale is a power of
+// two chosen so that the largest |coordinate| lies in [1, 2): the product is exact, and no threshold below depends on the unit of the scene.
+// The middle is zero but along axes on which the scene lies so far from the origin that the difference is exact (Sterbenz 1974): what
+// counts for the padding is then the scene's size, not its place.
 #ifndef GRID_GLSL
 #define GRID_GLSL
 
@@ -40,9 +42,13 @@ struct GridHeader {
     uvec2 references;
     uvec2 triangles;
     uvec2 bricks;
+    vec3 middle; // in input coordinates
+    uint reserved;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };
+
+vec3 to_frame(GridHeader grid, vec3 point) { return (point - grid.middle) * grid.scale; }
 
 // Lower boundary of cell i, upper boundary of cell i - 1. The one function that both the build and the walk use: the walk is watertight
 // only if they agree bit for bit.

@@ -49,7 +49,7 @@ MovedRay move_ray(Ray ray, GridHeader grid) {
     bvec3 zero = lessThan(magnitude, vec3(largest * NEGLIGIBLE_COMPONENT));
     vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
                           zero.z ? 0.0 : ray.direction.z * shrink);
-    vec3 origin = ray.origin * grid.scale;
+    vec3 origin = to_frame(grid, ray.origin);
     moved.t_of_s = vec2(grid.inverse_scale, shrink);
     float first = ray.t_min * grow * grid.scale;
     float last = ray.t_max * grow * grid.scale;

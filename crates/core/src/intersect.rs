@@ -64,7 +64,7 @@ pub fn move_ray(ray: &Ray, grid: &GridHeader) -> Option<MovedRay> {
         let zero = magnitude[axis] < longest * NEGLIGIBLE_COMPONENT;
         if zero { 0.0 } else { ray.direction[axis] * shrink }
     });
-    let origin = ray.origin.map(|x| x * grid.scale);
+    let origin = grid.to_frame(ray.origin);
     let first = ray.t_min * grow * grid.scale;
     let last = ray.t_max * grow * grid.scale;
 

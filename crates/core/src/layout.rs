@@ -11,17 +11,17 @@ pub const OVERFLOW_PAIRS: u32 = 1;
 /// [`Report::overflow`]: the resolution was lowered to fit the capacity of cells.
 pub const OVERFLOW_CELLS: u32 = 2;
 
-/// Head of a grid in device memory; in the grid's frame, which is the input's times `scale`.
+/// Head of a grid in device memory; in the grid's frame: (input coordinate - `middle`) * `scale`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct GridHeader {
     /// Padded minimum of the scene box.
     pub box_min: [f32; 3],
-    /// Power of two that brings the largest |coordinate| into [1, 2).
+    /// Power of two that brings the largest |coordinate - middle| into [1, 2).
     pub scale: f32,
     /// Padded maximum of the scene box.
     pub box_max: [f32; 3],
-    /// 2^-20 of the largest |coordinate|.
+    /// 2^-20 of the largest |coordinate| of the frame.
     pub pad: f32,
     /// Size of a cell; the last boundary is at or beyond `box_max`.
     pub cell_size: [f32; 3],
@@ -43,6 +43,17 @@ pub struct GridHeader {
     pub triangles: [u32; 2],
     /// Device address of the bricks.
     pub bricks: [u32; 2],
+    /// Zero but along axes on which the scene lies far from the origin; subtracting it from a vertex is exact.
+    pub middle: [f32; 3],
+    /// Zero.
+    pub reserved: u32,
+}
+
+impl GridHeader {
+    /// A point brought into the grid's frame.
+    pub fn to_frame(&self, point: [f32; 3]) -> [f32; 3] {
+        std::array::from_fn(|axis| (point[axis] - self.middle[axis]) * self.scale)
+    }
 }
 
 /// A block of 4^3 cells.

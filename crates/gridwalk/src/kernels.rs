@@ -672,6 +672,10 @@ const _: () = {
     assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, bricks) == 104);
     assert!(size(|host: &Host| &host.bricks) == 8);
+    assert!(core::mem::offset_of!(Host, middle) == 112);
+    assert!(size(|host: &Host| &host.middle) == 12);
+    assert!(core::mem::offset_of!(Host, reserved) == 124);
+    assert!(size(|host: &Host| &host.reserved) == 4);
 };
 const _: () = {
     use gridwalk_core::Hit as Host;

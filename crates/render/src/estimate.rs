@@ -59,7 +59,7 @@ pub fn estimate_grid(scene: &Scene, settings: &BuildSettings) -> Result<GridEsti
     let (mut pairs, mut box_pairs) = (0_u64, 0_u64);
     for_each_triangle(scene, |corners| {
         if let Some(corners) = corners {
-            let corners = corners.map(|corner| corner.map(|x| x * header.scale));
+            let corners = corners.map(|corner| header.to_frame(corner));
             let cells = triangle_cells(&header, corners);
             let size = cells.size();
             let in_box = size.iter().map(|cells| u64::from(*cells)).product::<u64>();

@@ -30,7 +30,7 @@ fn resolution_in_double(extent: [f64; 3], limit: [f64; 3], target: f64) -> [f64;
 fn check(gpu: &Gpu, info: Configure, scene: Bounds, what: &str) -> GridHeader {
     let shape = gpu.tracer.shape();
     let device_scene = gpu.upload("scene", &[scene]);
-    let grid = gpu.guarded("grid", 112);
+    let grid = gpu.guarded("grid", size_of::<GridHeader>() as u64);
     let mut state = BuildState::zeroed();
     let mut arguments = DispatchArguments::zeroed();
     let mut report = Report::zeroed();
@@ -136,7 +136,15 @@ fn configure_special_boxes() {
         check(gpu, INFO, scene([-1e30; 3], [1e30; 3]), "huge");
         check(gpu, INFO, scene([-3.4e38; 3], [3.4e38; 3]), "as large as floats are");
         check(gpu, INFO, scene([-1e-30; 3], [1e-30; 3]), "tiny");
-        check(gpu, INFO, scene([148_375.0, 1_233.0, -223_424.0], [148_377.0, 1_235.0, -223_422.0]), "far from the origin");
+        let far = check(gpu, INFO, scene([148_375.0, 1_233.0, -223_424.0], [148_377.0, 1_235.0, -223_422.0]), "far from the origin");
+        assert_eq!(far.middle, [148_376.0, 1_234.0, -223_423.0]);
+        // Of the same shape as without the distance.
+        assert_eq!(far.resolution, check(gpu, INFO, unit, "the same at the origin").resolution);
+        let near = check(gpu, INFO, scene([7.0, -9.0, 0.0], [9.0, -7.0, 2.0]), "near the origin");
+        assert_eq!(near.middle, [8.0, -8.0, 0.0]);
+        let nearer = check(gpu, INFO, scene([6.9, -8.9, 0.0], [8.9, -6.9, 2.0]), "as near as to be left where it is");
+        assert_eq!(nearer.middle, [0.0; 3]);
+        check(gpu, INFO, scene([1e-33; 3], [1.1e-33; 3]), "differences would be denormal");
         check(gpu, Configure { density: f32::MAX, ..INFO }, unit, "an infinite number of cells");
         check(gpu, Configure { density: f32::MIN_POSITIVE, ..INFO }, unit, "a density of nearly nothing");
         check(gpu, Configure { cell_capacity: 0, ..INFO }, unit, "no room for a cell");

@@ -59,7 +59,7 @@ fn expected_triangle(mesh: &Mesh, header: &GridHeader, index: usize) -> Option<[
     let vertices = mesh.indices[index].map(|vertex| mesh.positions.get(vertex as usize).copied());
     let [Some(a), Some(b), Some(c)] = vertices else { return None };
     let v = [a, b, c];
-    v.iter().flatten().all(|x| x.is_finite()).then(|| v.map(|v| v.map(|x| x * header.scale)))
+    v.iter().flatten().all(|x| x.is_finite()).then(|| v.map(|v| header.to_frame(v)))
 }
 
 /// A device may take denormals for zero.

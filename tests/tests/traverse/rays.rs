@@ -130,7 +130,7 @@ pub fn hard_rays(mesh: &Mesh, header: &GridHeader, seed: u64) -> Vec<Ray> {
         directions.push([-tiny, -1.0, tiny]);
         directions.push([tiny, 0.5, -1.0]);
     }
-    let input = |point: V| scaled(point, header.inverse_scale);
+    let input = |point: V| add(scaled(point, header.inverse_scale), header.middle);
     let cell_point = |random: &mut Random, inside: [bool; 3]| {
         input(std::array::from_fn(|axis| {
             let i = random.below(header.resolution[axis] + 1) as f32;

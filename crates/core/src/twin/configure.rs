@@ -15,6 +15,10 @@ const MAX_RESOLUTION: f32 = 4096.0;
 /// 2^-20.
 pub const PAD: f32 = 9.536_743e-7;
 const MIN_CELL_IN_PADS: f32 = 4.0;
+/// Sizes of the scene from which on its middle is subtracted.
+const FAR: f32 = 4.0;
+/// 2^-100.
+const LEAST_MIDDLE: f32 = 7.888_609e-31;
 
 /// What a build asks `configure` for.
 #[derive(Clone, Copy, Debug)]
@@ -64,17 +68,27 @@ fn cell_size_for(low: f32, high: f32, count: f32) -> f32 {
     size
 }
 
-/// The scene box in the grid's frame, padded, with the scale that brings it there.
-fn padded_box(info: &Configure, scene: &Bounds) -> (Bounds, i32, f32) {
+/// The middle of an interval that lies far from zero, for the scene's size. All its points are then between half and twice the middle, and
+/// no difference is denormal: subtracting the middle is exact.
+fn middle_for(low: f32, high: f32, longest: f32) -> f32 {
+    let middle = 0.5 * low + 0.5 * high;
+    if middle.abs() >= max_f32(FAR * longest, LEAST_MIDDLE) { middle } else { 0.0 }
+}
+
+/// The scene box in the grid's frame, padded, with the middle and the scale that bring it there.
+fn padded_box(info: &Configure, scene: &Bounds) -> (Bounds, Vec3, i32, f32) {
     let empty = scene.dropped == info.triangle_count;
     let (low, high) = if empty { ([0.0; 3], [0.0; 3]) } else { (scene.low, scene.high) };
+    let longest = largest(sub(high, low));
+    let middle: Vec3 = std::array::from_fn(|axis| middle_for(low[axis], high[axis], longest));
+    let (low, high) = (sub(low, middle), sub(high, middle));
     let magnitude = largest(max(low.map(f32::abs), high.map(f32::abs)));
     let exponent = if magnitude > 0.0 { clamped_exponent(magnitude) } else { 0 };
     let scale = power_of_two(-exponent);
     let pad = max_f32(magnitude * scale, 1.0) * PAD;
     let low = sub(low.map(|x| x * scale), [pad; 3]);
     let high = add(high.map(|x| x * scale), [pad; 3]);
-    (Bounds { low, high, ..*scene }, exponent, pad)
+    (Bounds { low, high, ..*scene }, middle, exponent, pad)
 }
 
 /// Whether a capacity has room for all cells of a resolution. Two axes have at most 2^24 cells together, so nothing overflows.
@@ -84,7 +98,7 @@ pub fn fits(resolution: [u32; 3], capacity: u32) -> bool {
 
 /// The grid's head but for its addresses, the density that was used, and whether the cells did not fit.
 pub fn configure_header(info: &Configure, scene: &Bounds, addresses: [[u32; 2]; 4]) -> (GridHeader, f32, u32) {
-    let (padded, exponent, pad) = padded_box(info, scene);
+    let (padded, middle, exponent, pad) = padded_box(info, scene);
     let extent = sub(padded.high, padded.low);
     let limit = extent.map(|x| max_f32((x / (MIN_CELL_IN_PADS * pad)).floor(), 1.0).min(MAX_RESOLUTION));
     let mut density = info.density;
@@ -133,6 +147,8 @@ pub fn configure_header(info: &Configure, scene: &Bounds, addresses: [[u32; 2]; 
         references,
         triangles,
         bricks,
+        middle,
+        reserved: 0,
     };
     (header, density, overflow)
 }

@@ -26,7 +26,7 @@ pub fn overlap_count(
             continue;
         }
         let gathered = gather_triangle(positions, indices, vertex_count, triangle);
-        let v = gathered.map_or([[0.0; 3]; 3], |v| v.map(|vertex| vertex.map(|x| x * grid.scale)));
+        let v = gathered.map_or([[0.0; 3]; 3], |v| v.map(|vertex| grid.to_frame(vertex)));
         counts[triangle as usize] = gathered.map_or(0, |_| {
             let [x, y, z] = triangle_cells(grid, v).size();
             x * y * z
