@@ -95,7 +95,7 @@ impl From<RenderError> for Failure {
             RenderError::OutOfDeviceMemory { .. } | RenderError::OutOfHostMemory | RenderError::TooDense { .. } => Exit::OutOfMemory,
             RenderError::Gridwalk(LibraryError::Capacity { .. } | LibraryError::DeviceLimit { .. }) => Exit::OutOfMemory,
             RenderError::Setting { .. } | RenderError::Gridwalk(LibraryError::Option { .. }) => Exit::Usage,
-            RenderError::Scene { .. } => Exit::Input,
+            RenderError::Scene { .. } | RenderError::KeyFrame(_) => Exit::Input,
             RenderError::Interrupted => Exit::Interrupted,
             _ => Exit::DeviceLost,
         };

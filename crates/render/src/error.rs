@@ -117,6 +117,9 @@ pub enum Error {
         /// What is possible.
         expected: &'static str,
     },
+    /// A key-frame cannot be read.
+    #[error(transparent)]
+    KeyFrame(#[from] gridwalk_scene::Error),
     /// The progress callback asked to stop.
     #[error("interrupted")]
     Interrupted,
