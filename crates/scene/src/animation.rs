@@ -3,6 +3,12 @@
 //! Times are in seconds from the beginning of the animation. The same time gives the same answer whatever was asked before, so a frame
 //! rendered alone equals the frame of a run.
 
+use std::sync::Arc;
+
+use crate::key_reader::KeyReader;
+use crate::sequence::Sequence;
+use crate::transform::Edit;
+use crate::vector::normalised;
 use crate::{Camera, Light, Material, Mesh, Result, Scene, Texture};
 
 /// What of an animation is wanted.
@@ -32,12 +38,119 @@ pub struct Animation {
     pub motions: Vec<Motion>,
     /// The clips that the files name; empty where there is but one course of time.
     pub clips: Vec<Clip>,
-    /// Seconds; 0 for a scene that stands still.
+    /// Seconds, of that which takes the longest; 0 for a scene that stands still.
     pub duration: f64,
-    /// Frames a second that the files were made for.
+    /// Frames a second that the files were made for: the most that any of them asks for.
     pub fps: f64,
-    /// Whether the end goes over into the beginning: the frame at `duration` is then that at 0.
+    /// Whether the end goes over into the beginning: the frame at `duration` is then that at 0. So it is where all that moves loops, each
+    /// a whole number of times.
     pub cyclic: bool,
+    pub(crate) tracks: Tracks,
+    /// As it was when the scene was read; `None` where nothing has key-frames.
+    pub(crate) keys: Option<KeyReader>,
+}
+
+/// How everything moves: an entry for each mesh, camera and light of the scene, in its order; what has none stands still.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tracks {
+    pub(crate) meshes: Vec<MeshTrack>,
+    pub(crate) cameras: Vec<CameraTrack>,
+    pub(crate) lights: Vec<LightTrack>,
+}
+
+/// How a mesh moves.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum MeshTrack {
+    #[default]
+    Still,
+    Keys(KeyTrack),
+}
+
+/// How a camera moves.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum CameraTrack {
+    #[default]
+    Still,
+}
+
+/// How a light moves.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum LightTrack {
+    #[default]
+    Still,
+}
+
+/// A mesh's course through a sequence of files.
+#[derive(Clone, Debug)]
+pub(crate) struct KeyTrack {
+    pub(crate) sequence: Arc<Sequence>,
+    /// Key-frames a second, finite and above 0.
+    pub(crate) fps: f64,
+    /// Seconds into the sequence at time 0.
+    pub(crate) start: f64,
+    pub(crate) looped: bool,
+    /// Without, a key-frame stands until the next one.
+    pub(crate) interpolate: bool,
+    /// What is done to each key-frame.
+    pub(crate) edit: Edit,
+}
+
+/// How long something moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Course {
+    /// Until it stands still, or begins anew.
+    pub(crate) seconds: f64,
+    pub(crate) looped: bool,
+    /// What its file was made for, if it says so.
+    pub(crate) fps: Option<f64>,
+}
+
+/// How far from a key-frame, as a part of the way to the next one, a time still counts as the key-frame's: far above what is lost by
+/// computing a frame's time, far below what is seen.
+const SNAP: f64 = 1e-6;
+
+impl KeyTrack {
+    pub(crate) fn at(&self, time: f64) -> KeyPair {
+        let count = self.sequence.key_count();
+        let keys = f64::from(count);
+        let place = (time + self.start) * self.fps;
+        let place = if place.is_finite() { place } else { 0.0 };
+        let nearest = place.round();
+        let place = if (place - nearest).abs() < SNAP { nearest } else { place };
+        let place = if self.looped { place.rem_euclid(keys) } else { place.clamp(0.0, keys - 1.0) };
+        let first = place.floor();
+        let weight = if self.interpolate { (place - first) as f32 } else { 0.0 };
+        // Of a negative place next to 0 the remainder may round to the divisor.
+        let first = if first >= keys { 0 } else { first as u32 };
+        let second = if weight == 0.0 { first } else { (first + 1) % count };
+        KeyPair { first, second, weight }
+    }
+
+    pub(crate) fn course(&self) -> Course {
+        let keys = f64::from(self.sequence.key_count());
+        let seconds = if self.looped { keys / self.fps } else { ((keys - 1.0) / self.fps - self.start).max(0.0) };
+        Course { seconds, looped: self.looped, fps: Some(self.fps) }
+    }
+}
+
+/// Brings a key-frame nearer to the next one, where the two have the same triangles.
+pub(crate) fn blend(first: &mut Mesh, second: &Mesh, weight: f32) {
+    if weight == 0.0 || first.indices != second.indices || first.positions.len() != second.positions.len() {
+        return;
+    }
+    let towards = |from: f32, to: f32| from + (to - from) * weight;
+    let values = first.positions.as_flattened_mut().iter_mut().zip(second.positions.as_flattened());
+    values.chain(first.uvs.as_flattened_mut().iter_mut().zip(second.uvs.as_flattened())).for_each(|(from, to)| *from = towards(*from, *to));
+    if first.colours.len() == second.colours.len() {
+        let colours = first.colours.as_flattened_mut().iter_mut().zip(second.colours.as_flattened());
+        colours.for_each(|(from, to)| *from = towards(*from, *to));
+    }
+    for (from, to) in first.normals.iter_mut().zip(&second.normals) {
+        let sum = std::array::from_fn(|axis| f64::from(towards(from[axis], to[axis])));
+        if let Some(normal) = normalised(sum) {
+            *from = normal.map(|value| value as f32);
+        }
+    }
 }
 
 /// How a mesh moves.
@@ -80,10 +193,6 @@ pub struct KeyFrame {
     /// Milliseconds of making the mesh of them.
     pub parse_ms: f64,
 }
-
-/// Reads key-frames; made by [`Animation::reader`] for a thread of its own.
-#[derive(Debug)]
-pub struct KeyReader {}
 
 /// A mesh that is bent by morph targets, a skin or a node: first the targets, weighted, are added to the base, then each vertex is moved
 /// by the blend of its joints' matrices.
@@ -134,7 +243,27 @@ impl Animation {
     /// A scene that stands still.
     pub fn still(scene: Scene) -> Animation {
         let motions = vec![Motion::Still; scene.meshes.len()];
-        Animation { scene, motions, clips: Vec::new(), duration: 0.0, fps: DEFAULT_FPS, cyclic: false }
+        Animation {
+            scene,
+            motions,
+            clips: Vec::new(),
+            duration: 0.0,
+            fps: DEFAULT_FPS,
+            cyclic: false,
+            tracks: Tracks::default(),
+            keys: None,
+        }
+    }
+
+    /// Sets duration, rate and whether the end goes over into the beginning, from all that moves. What is given goes before it.
+    pub(crate) fn set_course(&mut self, courses: &[Course], seconds: Option<f64>, fps: Option<f64>) {
+        let longest = courses.iter().fold(0.0_f64, |longest, course| longest.max(course.seconds));
+        self.duration = seconds.unwrap_or(longest);
+        let fastest = courses.iter().filter_map(|course| course.fps).reduce(f64::max);
+        self.fps = fps.or(fastest).unwrap_or(DEFAULT_FPS);
+        let times = |course: &Course| self.duration / course.seconds;
+        self.cyclic = self.duration > 0.0
+            && courses.iter().all(|course| course.looped && times(course) > 0.5 && (times(course) - times(course).round()).abs() < SNAP);
     }
 
     /// Frames from the beginning to the end at a rate; 1 or more.
@@ -146,39 +275,46 @@ impl Animation {
     }
 
     /// The key-frames of a mesh at a time. For meshes without key-frames the answer has no meaning.
-    pub fn keys_at(&self, _mesh: usize, _time: f64) -> KeyPair {
-        KeyPair::default()
+    pub fn keys_at(&self, mesh: usize, time: f64) -> KeyPair {
+        match self.tracks.meshes.get(mesh) {
+            Some(MeshTrack::Keys(track)) => track.at(time),
+            _ => KeyPair::default(),
+        }
+    }
+
+    /// Number of key-frames of a mesh; 0 for one that has none.
+    pub fn key_count(&self, mesh: usize) -> u32 {
+        match self.tracks.meshes.get(mesh) {
+            Some(MeshTrack::Keys(track)) => track.sequence.key_count(),
+            _ => 0,
+        }
     }
 
     /// Brings `pose` to that of a deformed mesh at a time, without allocating where it held one of the same mesh before.
     pub fn pose(&self, _mesh: usize, _time: f64, _pose: &mut Pose) {}
 
-    /// As [`Scene::camera`], at a time.
+    /// As [`Scene::camera`], at a time. Without cameras in the scene it is one that frames the scene at time 0, so that it stands still.
     pub fn camera(&self, name: Option<&str>, _time: f64) -> Option<Camera> {
-        self.scene.camera(name)
+        let number = self.scene.camera_number(name);
+        match number.and_then(|number| self.tracks.cameras.get(number)) {
+            Some(CameraTrack::Still) | None => self.scene.camera(name),
+        }
     }
 
     /// The lights at a time: always as many as [`Scene::lights`], each of the same kind.
     pub fn lights(&self, _time: f64) -> Vec<Light> {
-        self.scene.lights.clone()
+        let light = |(number, light): (usize, &Light)| match self.tracks.lights.get(number) {
+            Some(LightTrack::Still) | None => *light,
+        };
+        self.scene.lights.iter().enumerate().map(light).collect()
     }
 
-    /// A reader of key-frames, for a thread of its own.
+    /// A reader of key-frames, for a thread of its own. Each has a table of materials and textures of its own, which begins as the scene's.
     ///
     /// # Errors
-    /// A folder that is there no more.
+    /// None so far.
     pub fn reader(&self) -> Result<KeyReader> {
-        Ok(KeyReader {})
-    }
-}
-
-impl KeyReader {
-    /// Reads a key-frame of a mesh.
-    ///
-    /// # Errors
-    /// A file that is missing or broken, by name.
-    pub fn read(&mut self, _mesh: usize, _key: u32) -> Result<KeyFrame> {
-        Ok(KeyFrame::default())
+        Ok(self.keys.clone().unwrap_or_default())
     }
 }
 

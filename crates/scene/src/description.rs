@@ -3,21 +3,26 @@
 use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use toml::Spanned;
 
-use crate::files::{Files, read_file};
-use crate::generate;
-use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, empty, folder_of, stem};
-use crate::obj_scene::{self, Target};
-use crate::panorama;
+use crate::animation::{Course, KeyTrack, MeshTrack, Tracks};
+use crate::assets::Assets;
+use crate::files::read_file;
+use crate::key_reader::{Cache, KeyReader, first_mesh};
+use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, folder_of};
+use crate::sequence::{Pattern, Range as NumberRange, Sequence};
 use crate::suggest::closest;
-use crate::texture::{Textures, Use, holds_normals};
-use crate::transform::Transform;
+use crate::texture::Use;
+use crate::transform::{Edit, Transform};
 use crate::vector::{cross, dot, normalised, sub};
-use crate::{Background, Camera, Error, Framing, Light, LoadOptions, Material, Mesh, NamedCamera, RenderDefaults, Result, Scene, TONEMAPS};
+use crate::{
+    Animation, Background, Camera, Error, Framing, Light, LoadOptions, Material, Mesh, Motion, NamedCamera, RenderDefaults, Result, Scene,
+};
+use crate::{TONEMAPS, generate, mesh_file, panorama};
 
 /// A finite number that fits single precision.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +31,17 @@ struct Number(f32);
 impl<'de> Deserialize<'de> for Number {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let value = f64::deserialize(deserializer)? as f32;
+        if value.is_finite() { Ok(Self(value)) } else { Err(D::Error::custom("the number must be finite")) }
+    }
+}
+
+/// A finite number in double precision, for times and rates.
+#[derive(Clone, Copy, Debug)]
+struct Real(f64);
+
+impl<'de> Deserialize<'de> for Real {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = f64::deserialize(deserializer)?;
         if value.is_finite() { Ok(Self(value)) } else { Err(D::Error::custom("the number must be finite")) }
     }
 }
@@ -182,6 +198,14 @@ struct MaterialEntry {
 #[serde(deny_unknown_fields)]
 struct MeshEntry {
     file: Option<Spanned<String>>,
+    sequence: Option<Spanned<SequenceEntry>>,
+    fps: Option<Spanned<Real>>,
+    start: Option<Real>,
+    #[serde(rename = "loop")]
+    looped: Option<bool>,
+    interpolate: Option<bool>,
+    first: Option<u64>,
+    last: Option<u64>,
     shape: Option<Spanned<String>>,
     name: Option<String>,
     material: Option<Spanned<String>>,
@@ -197,6 +221,39 @@ struct MeshEntry {
     seed: Option<u32>,
     corners: Option<[Vec3; 4]>,
     uv_scale: Option<Number>,
+}
+
+/// A pattern, or the names of all files.
+#[derive(Clone, Debug)]
+enum SequenceEntry {
+    Pattern(String),
+    List(Vec<String>),
+}
+
+impl<'de> Deserialize<'de> for SequenceEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct SequenceVisitor;
+        impl<'de> Visitor<'de> for SequenceVisitor {
+            type Value = SequenceEntry;
+
+            fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.write_str("a pattern such as \"name.%04d.obj\", or a list of file names")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, value: &str) -> Result<Self::Value, E> {
+                Ok(SequenceEntry::Pattern(value.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
+                let mut names = Vec::new();
+                while let Some(name) = sequence.next_element()? {
+                    names.push(name);
+                }
+                Ok(SequenceEntry::List(names))
+            }
+        }
+        deserializer.deserialize_any(SequenceVisitor)
+    }
 }
 
 /// One factor, or one an axis.
@@ -247,7 +304,7 @@ const MAX_GENERATED_TRIANGLES: u64 = 1 << 25;
 const MAX_GENERATED_TOTAL: u64 = 1 << 26;
 
 /// Reads a scene file. Everything that it names lies below its folder, unless the options allow more.
-pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
+pub(crate) fn open(path: &Path, options: &LoadOptions) -> Result<Animation> {
     let bytes = read_file(path, options.max_description_bytes)?;
     let shown = path.to_string_lossy().into_owned();
     let text = String::from_utf8(bytes).map_err(|error| Error::Description {
@@ -257,19 +314,19 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
     })?;
     let source = Source { file: &shown, text: &text };
     let description: Description = toml::from_str(&text).map_err(|error| source.toml_error(&error))?;
-    let files = Files::new(Some(&folder_of(path)), options.allow_external_paths)?;
-    let root = files.root().map(Path::to_owned).unwrap_or_default();
+    let assets = Assets::new(Some(&folder_of(path)), options)?;
+    let root = assets.files.root().map(Path::to_owned).unwrap_or_default();
     let mut builder = Builder {
         source,
-        options,
-        files: &files,
         root,
-        textures: Textures::new(&files, options),
-        materials: vec![Material::default()],
-        warnings: Vec::new(),
+        assets,
+        cache: Cache::new(options.max_key_cache_bytes),
+        tracks: Tracks::default(),
+        courses: Vec::new(),
         generated: 0,
     };
-    builder.build(description)
+    let scene = builder.build(description)?;
+    Ok(builder.finish(scene))
 }
 
 #[derive(Clone, Copy)]
@@ -340,16 +397,36 @@ impl Source<'_> {
 
 struct Builder<'a> {
     source: Source<'a>,
-    options: &'a LoadOptions,
-    files: &'a Files,
     root: PathBuf,
-    textures: Textures<'a>,
-    materials: Vec<Material>,
-    warnings: Vec<String>,
+    assets: Assets,
+    cache: Cache,
+    tracks: Tracks,
+    courses: Vec<Course>,
     generated: u64,
 }
 
 impl Builder<'_> {
+    /// The animation about a scene that was built.
+    fn finish(self, scene: Scene) -> Animation {
+        let motion = |track: &MeshTrack| match track {
+            MeshTrack::Still => Motion::Still,
+            MeshTrack::Keys(_) => Motion::Keys,
+        };
+        let keys = self.tracks.meshes.iter().map(|track| match track {
+            MeshTrack::Keys(track) => Some(track.clone()),
+            MeshTrack::Still => None,
+        });
+        let keys: Vec<Option<KeyTrack>> = keys.collect();
+        let mut animation = Animation::still(scene);
+        animation.motions = self.tracks.meshes.iter().map(motion).collect();
+        if keys.iter().any(Option::is_some) {
+            animation.keys = Some(KeyReader::new(keys, self.assets, self.cache, &animation.scene.warnings));
+        }
+        animation.tracks = self.tracks;
+        animation.set_course(&self.courses, None, None);
+        animation
+    }
+
     fn build(&mut self, description: Description) -> Result<Scene> {
         let source = self.source;
         let up = match &description.up {
@@ -363,10 +440,10 @@ impl Builder<'_> {
             if !names.insert(material.name.clone()) {
                 return Err(source.error(at, format!("material \"{}\" is there twice; rename one", material.name)));
             }
-            self.materials.push(material);
+            self.assets.material(material);
         }
         // The names that meshes may use are those of the file, not those that OBJ files bring along.
-        let named: Vec<String> = self.materials.iter().map(|material| material.name.clone()).collect();
+        let named: Vec<String> = self.assets.materials().iter().map(|material| material.name.clone()).collect();
         let mut meshes = Vec::new();
         for entry in description.mesh {
             let at = entry.span().start;
@@ -377,7 +454,7 @@ impl Builder<'_> {
             Some(entry) => self.background(entry)?,
             None => DEFAULT_BACKGROUND,
         };
-        let mut scene = Scene { meshes, background, up, ..empty() };
+        let mut scene = Scene { background, up, ..self.assets.scene(meshes) };
         if lights.is_empty() {
             scene.lights = default_lights(up);
             scene.ambient = DEFAULT_AMBIENT;
@@ -399,11 +476,8 @@ impl Builder<'_> {
             source.choose("camera", wanted, &cameras)?;
         }
         if scene.meshes.is_empty() {
-            self.warnings.push(format!("{}: holds no meshes", source.file));
+            scene.warnings.push(format!("{}: holds no meshes", source.file));
         }
-        scene.materials = std::mem::take(&mut self.materials);
-        scene.textures = std::mem::take(&mut self.textures.textures);
-        scene.warnings = std::mem::take(&mut self.warnings);
         Ok(scene)
     }
 
@@ -445,9 +519,9 @@ impl Builder<'_> {
             (None, Some(Colour(bottom)), Some(Colour(top)), None) => Ok(Background::Gradient { bottom, top }),
             (None, None, None, Some(image)) => {
                 let path = self.find(&image)?;
-                let bytes = self.files.read(&path, self.options.max_texture_bytes)?;
+                let bytes = read_file(&path, self.assets.options.max_texture_bytes)?;
                 let scale = entry.scale.map_or(1.0, |scale| scale.0);
-                let (width, height, pixels) = panorama::decode(&bytes, scale, self.options)
+                let (width, height, pixels) = panorama::decode(&bytes, scale, &self.assets.options)
                     .map_err(|message| source.error_in(image.span(), format!("{}: {message}", image.get_ref())))?;
                 Ok(Background::Equirectangular {
                     width,
@@ -572,8 +646,7 @@ impl Builder<'_> {
         }
         let normals = self.texture(&entry.normal_map, Use::Data)?;
         let bumps = self.texture(&entry.bump_map, Use::Data)?;
-        let normal_map_is_height =
-            bumps.and_then(|map| self.textures.textures.get(map as usize)).is_some_and(|texture| !holds_normals(texture));
+        let normal_map_is_height = bumps.is_some_and(|map| self.assets.textures.is_height(map));
         let given = |colour: Option<Colour>, map: Option<u32>, absent: [f32; 3]| match (colour, map) {
             (Some(Colour(colour)), _) => colour,
             (None, Some(_)) => [1.0; 3],
@@ -613,9 +686,9 @@ impl Builder<'_> {
         let Some(name) = name else { return Ok(None) };
         let source = self.source;
         let root = self.root.clone();
-        self.textures.load(&root, name.get_ref(), usage).or_else(|message| match source.error_in(name.span(), message) {
+        self.assets.textures.load(&root, name.get_ref(), usage).or_else(|message| match source.error_in(name.span(), message) {
             Error::Description { file, line, message } => {
-                self.warnings.push(format!("{file}:{line}: no texture: {message}"));
+                self.assets.warnings.push(format!("{file}:{line}: no texture: {message}"));
                 Ok(None)
             }
             error => Err(error),
@@ -624,7 +697,7 @@ impl Builder<'_> {
 
     /// The path of a file that the scene cannot do without.
     fn find(&self, name: &Spanned<String>) -> Result<PathBuf> {
-        self.files.find(&self.root, name.get_ref()).map_err(|error| self.source.error_in(name.span(), error.to_string()))
+        self.assets.files.find(&self.root, name.get_ref()).map_err(|error| self.source.error_in(name.span(), error.to_string()))
     }
 
     fn mesh(&mut self, entry: MeshEntry, at: usize, named: &[String]) -> Result<Mesh> {
@@ -633,43 +706,88 @@ impl Builder<'_> {
             Some(name) => Some(source.choose("material", name, &named.iter().map(String::as_str).collect::<Vec<_>>())? as u32),
             None => None,
         };
-        let mut mesh = match (&entry.file, &entry.shape) {
-            (Some(file), None) => {
+        if entry.sequence.is_none() {
+            self.refuse_sequence_keys(&entry, at)?;
+        }
+        let mut edit =
+            Edit { name: entry.name.clone(), material, uv_scale: entry.uv_scale.map(|scale| scale.0), transform: self.transform(&entry)? };
+        let (mut mesh, track) = match (&entry.file, &entry.sequence, &entry.shape) {
+            (Some(file), None, None) => {
                 self.refuse_shape_keys(&entry, at)?;
                 let path = self.find(file)?;
-                let in_place = |error: Error| match error {
-                    error @ (Error::Obj { .. } | Error::Description { .. }) => error,
-                    error => source.error_in(file.span(), error.to_string()),
-                };
-                let bytes = self.files.read(&path, self.options.max_mesh_bytes).map_err(in_place)?;
-                let mut target = Target {
-                    files: self.files,
-                    options: self.options,
-                    textures: &mut self.textures,
-                    materials: &mut self.materials,
-                    warnings: &mut self.warnings,
-                };
-                let folder = folder_of(&path);
-                obj_scene::read(&mut target, &bytes, file.get_ref(), &stem(&path), Some(&folder), 0)?
+                let timed = mesh_file::read(&mut self.assets, &path, file.get_ref()).map_err(|error| self.in_place(file.span(), error))?;
+                (timed.mesh, MeshTrack::Still)
             }
-            (None, Some(shape)) => self.shape(&entry, shape, at)?,
-            _ => return Err(source.error(at, "a mesh needs file = \"name.obj\" or shape = \"sphere\"")),
+            (None, Some(sequence), None) => {
+                self.refuse_shape_keys(&entry, at)?;
+                let track = self.sequence(&entry, sequence, &mut edit)?;
+                let mesh = first_mesh(&mut self.assets, &mut self.cache, &track).map_err(|error| self.in_place(sequence.span(), error))?;
+                self.courses.push(track.course());
+                self.tracks.meshes.push(MeshTrack::Keys(track));
+                return Ok(mesh);
+            }
+            (None, None, Some(shape)) => (self.shape(&entry, shape, at)?, MeshTrack::Still),
+            _ => return Err(source.error(at, "a mesh needs one of: file = \"name.obj\", sequence = \"name.%04d.obj\", shape = \"sphere\"")),
         };
-        if let Some(name) = entry.name {
-            mesh.name = name;
+        edit.apply(&mut mesh);
+        self.tracks.meshes.push(track);
+        Ok(mesh)
+    }
+
+    /// An error of a file that the scene file names; those that tell their own place are left as they are.
+    fn in_place(&self, span: Range<usize>, error: Error) -> Error {
+        match error {
+            error @ (Error::Obj { .. } | Error::Description { .. }) => error,
+            error => self.source.error_in(span, error.to_string()),
         }
-        if let Some(material) = material {
-            mesh.materials.fill(material);
-        }
-        if let Some(scale) = entry.uv_scale {
-            for uv in mesh.uvs.as_flattened_mut() {
-                *uv *= scale.0;
+    }
+
+    fn sequence(&self, entry: &MeshEntry, sequence: &Spanned<SequenceEntry>, edit: &mut Edit) -> Result<KeyTrack> {
+        let source = self.source;
+        let wrong = |message: String| source.error_in(sequence.span(), message);
+        let range = NumberRange { first: entry.first, last: entry.last };
+        let files = match sequence.get_ref() {
+            SequenceEntry::Pattern(name) => {
+                let slashed = name.replace('\\', "/");
+                let (folder, file) = slashed.rsplit_once('/').map_or((None, slashed.as_str()), |(folder, file)| (Some(folder), file));
+                let pattern = Pattern::parse(file).map_err(wrong)?.ok_or_else(|| {
+                    wrong(format!(
+                        "\"{name}\" has no place for a number; write %04d or #### for it, or file = for a mesh that stands still"
+                    ))
+                })?;
+                let folder = match folder {
+                    Some(folder) => self.assets.files.folder(&self.root, folder).map_err(|error| wrong(error.to_string()))?,
+                    None => self.root.clone(),
+                };
+                Sequence::numbered(pattern, &folder, range, false).map_err(wrong)?
             }
-        }
-        let transform = match (&entry.matrix, entry.translate.is_some() || entry.rotate.is_some() || entry.scale.is_some()) {
-            (Some(matrix), true) => {
-                return Err(source.error_in(matrix.span(), "a mesh has a matrix, or translate, rotate and scale, not both"));
+            SequenceEntry::List(_) if range.first.is_some() || range.last.is_some() => {
+                return Err(wrong("first and last belong to a pattern; leave names out of the list instead".to_owned()));
             }
+            SequenceEntry::List(names) => {
+                Sequence::listed(names.clone(), &self.root).ok_or_else(|| wrong("a sequence needs one file or more".to_owned()))?
+            }
+        };
+        edit.name.get_or_insert_with(|| files.title());
+        let fps = match &entry.fps {
+            Some(fps) if fps.get_ref().0 > 0.0 => fps.get_ref().0,
+            Some(fps) => return Err(source.error_in(fps.span(), format!("fps is {}; it must be above 0", fps.get_ref().0))),
+            None => crate::DEFAULT_FPS,
+        };
+        Ok(KeyTrack {
+            sequence: Arc::new(files),
+            fps,
+            start: entry.start.map_or(0.0, |start| start.0),
+            looped: entry.looped.unwrap_or(false),
+            interpolate: entry.interpolate.unwrap_or(true),
+            edit: edit.clone(),
+        })
+    }
+
+    fn transform(&self, entry: &MeshEntry) -> Result<Transform> {
+        let source = self.source;
+        match (&entry.matrix, entry.translate.is_some() || entry.rotate.is_some() || entry.scale.is_some()) {
+            (Some(matrix), true) => Err(source.error_in(matrix.span(), "a mesh has a matrix, or translate, rotate and scale, not both")),
             (Some(matrix), false) => {
                 let rows: Vec<[f64; 4]> = matrix.get_ref().iter().map(|row| plain(*row).map(f64::from)).collect();
                 Transform::from_rows(&rows).ok_or_else(|| {
@@ -677,16 +795,29 @@ impl Builder<'_> {
                         matrix.span(),
                         "matrix must be 3 rows of 4 numbers (or 4 rows, the last [0, 0, 0, 1]) and not flatten the mesh",
                     )
-                })?
+                })
             }
-            (None, _) => Transform::new(
+            (None, _) => Ok(Transform::new(
                 entry.scale.as_ref().map_or([1.0; 3], |scale| scale.get_ref().0).map(f64::from),
                 entry.rotate.map_or([0.0; 3], plain).map(f64::from),
                 entry.translate.map_or([0.0; 3], plain).map(f64::from),
-            ),
-        };
-        transform.apply(&mut mesh);
-        Ok(mesh)
+            )),
+        }
+    }
+
+    fn refuse_sequence_keys(&self, entry: &MeshEntry, at: usize) -> Result<()> {
+        let keys = [
+            ("fps", entry.fps.is_some()),
+            ("start", entry.start.is_some()),
+            ("loop", entry.looped.is_some()),
+            ("interpolate", entry.interpolate.is_some()),
+            ("first", entry.first.is_some()),
+            ("last", entry.last.is_some()),
+        ];
+        match keys.iter().find(|(_, given)| *given) {
+            Some((key, _)) => Err(self.source.error(at, format!("{key} belongs to a sequence"))),
+            None => Ok(()),
+        }
     }
 
     fn refuse_shape_keys(&self, entry: &MeshEntry, at: usize) -> Result<()> {

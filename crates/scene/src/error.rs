@@ -55,6 +55,38 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// A pattern for key-frames that makes no sense, or that no file matches.
+    #[error("{message}")]
+    Sequence {
+        /// What is wrong, and the cure.
+        message: String,
+    },
+    /// A key-frame that a sequence leaves out.
+    #[error("{} does not exist, but its sequence goes from {first} to {last}; put it there, or play only the part before it", path.display())]
+    MissingKeyFrame {
+        /// The file.
+        path: PathBuf,
+        /// The number of the first key-frame.
+        first: u64,
+        /// The number of the last one.
+        last: u64,
+    },
+    /// A key-frame that was asked for beyond the last, or of a mesh that has none.
+    #[error("there is no key-frame {key}; the mesh has {count} of them")]
+    NoKeyFrame {
+        /// What was asked for, counted from 0.
+        key: u32,
+        /// How many there are.
+        count: u32,
+    },
+    /// A clip that no file names.
+    #[error("there is no clip \"{clip}\"; {}", if known.is_empty() { "this scene has none: leave the clip out".to_owned() } else { format!("there are {}", known.join(", ")) })]
+    UnknownClip {
+        /// What was asked for.
+        clip: String,
+        /// All names.
+        known: Vec<String>,
+    },
     /// A line of an OBJ file that cannot be read.
     #[error("{file}:{line}: {message}")]
     Obj {

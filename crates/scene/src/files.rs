@@ -9,6 +9,7 @@ use crate::suggest::closest;
 use crate::{Error, Result};
 
 /// A folder and the permission to leave it.
+#[derive(Debug)]
 pub(crate) struct Files {
     root: Option<PathBuf>,
     allow_external: bool,
@@ -66,6 +67,16 @@ impl Files {
         Err(refused.unwrap_or_else(|| missing(self.neighbour(folder, &slashed))))
     }
 
+    /// A folder that a file in `within` names, if it may be listed.
+    pub(crate) fn folder(&self, within: &Path, name: &str) -> Result<PathBuf> {
+        self.permitted(&within.join(name)).map_err(|error| match error {
+            Error::Io { source, .. } if is_missing(&source) => {
+                Error::NotFound { path: PathBuf::from(name), suggestion: self.neighbour(within, name) }
+            }
+            error => error,
+        })
+    }
+
     /// Reads a file that [`Files::find`] returned, up to `limit` bytes.
     pub(crate) fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
         read_file(path, limit)
@@ -112,7 +123,8 @@ fn neighbour_in(folder: &Path, name: &str) -> Option<String> {
     closest(name, names.iter().map(String::as_str)).map(str::to_owned)
 }
 
-fn names_in(folder: &Path) -> impl Iterator<Item = OsString> {
+/// The names in a folder, in no order; none where it cannot be listed.
+pub(crate) fn names_in(folder: &Path) -> impl Iterator<Item = OsString> {
     fs::read_dir(folder).into_iter().flatten().filter_map(|entry| entry.ok().map(|entry| entry.file_name()))
 }
 

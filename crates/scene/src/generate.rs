@@ -322,6 +322,11 @@ pub fn merge(meshes: &[Mesh]) -> Mesh {
         merged.positions.extend_from_slice(&mesh.positions);
         merged.normals.extend_from_slice(&mesh.normals);
         merged.uvs.extend_from_slice(&mesh.uvs);
+        if !(merged.colours.is_empty() && mesh.colours.is_empty()) {
+            merged.colours.resize(first as usize, [1.0; 3]);
+            merged.colours.extend_from_slice(&mesh.colours);
+            merged.colours.resize(merged.positions.len(), [1.0; 3]);
+        }
         merged.indices.extend(mesh.indices.iter().map(|triangle| triangle.map(|at| at + first)));
         merged.materials.extend_from_slice(&mesh.materials);
     }

@@ -62,19 +62,23 @@
 #![forbid(unsafe_code)]
 
 mod animation;
+mod assets;
 mod description;
 mod error;
 mod files;
 mod frame;
 pub mod generate;
+mod key_reader;
 mod lines;
 mod load;
+mod mesh_file;
 mod mtl;
 mod normals;
 mod obj;
 mod obj_scene;
 mod options;
 mod panorama;
+mod sequence;
 mod suggest;
 mod texture;
 mod transform;
@@ -82,11 +86,10 @@ mod triangulate;
 mod types;
 mod vector;
 
-pub use animation::{
-    Animation, AnimationOptions, Clip, DEFAULT_FPS, Deformed, Influence, KeyFrame, KeyPair, KeyReader, MorphTarget, Motion, Pose,
-};
+pub use animation::{Animation, AnimationOptions, Clip, DEFAULT_FPS, Deformed, Influence, KeyFrame, KeyPair, MorphTarget, Motion, Pose};
 pub use error::{Error, Result};
 pub use frame::{Framing, frame_camera};
+pub use key_reader::KeyReader;
 pub use load::{load, load_reader, open, scene_of_mesh};
 pub use options::LoadOptions;
 pub use types::{Background, Bounds, Camera, Light, Material, Mesh, NamedCamera, RenderDefaults, Scene, TONEMAPS, Texture};

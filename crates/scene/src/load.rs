@@ -2,11 +2,19 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::files::{Files, read_file, read_stream};
-use crate::obj_scene::{self, Target};
-use crate::texture::Textures;
-use crate::{Animation, AnimationOptions, Background, Error, Light, LoadOptions, Material, Mesh, RenderDefaults, Result, Scene};
+use crate::Scene;
+use crate::animation::{KeyTrack, MeshTrack};
+use crate::assets::Assets;
+use crate::files::{read_file, read_stream};
+use crate::key_reader::{Cache, KeyReader, first_mesh};
+use crate::mesh_file;
+use crate::sequence::{Pattern, Range, Sequence, pattern_of};
+use crate::transform::Edit;
+use crate::{
+    Animation, AnimationOptions, Background, DEFAULT_FPS, Error, Light, LoadOptions, Material, Mesh, Motion, RenderDefaults, Result,
+};
 
 /// Reads a scene: an `.obj` file, or a scene file (`.toml`), or a folder that holds a `scene.toml`.
 ///
@@ -17,27 +25,58 @@ use crate::{Animation, AnimationOptions, Background, Error, Light, LoadOptions, 
 /// Files that cannot be opened, are outside the scene's folder, too large, or malformed: see [`Error`]. Missing or unreadable materials
 /// and textures are no errors; [`Scene::warnings`] lists them.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
-    let inside = path.join("scene.toml");
-    let path = if path.is_dir() { inside.as_path() } else { path };
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-    match ending.as_deref() {
-        Some("obj") => {
-            let bytes = read_file(path, options.max_mesh_bytes)?;
-            load_obj(&bytes, path, path.parent(), options)
-        }
-        Some("toml") => crate::description::load(path, options),
-        _ if path.exists() => Err(Error::UnknownFormat { path: path.to_owned() }),
-        // A name that does not exist is told with its neighbours rather than by its ending.
-        _ => read_file(path, 0).and(Err(Error::UnknownFormat { path: path.to_owned() })),
-    }
+    open(path, options, &AnimationOptions::default()).map(|animation| animation.scene)
 }
 
 /// Reads a scene with all that moves in it. [`load`] gives the same scene at time 0.
 ///
+/// A path such as `name.%04d.obj` or `name.####.obj` is a sequence: all files in its folder that have a number of so many digits or more in
+/// that place, in the order of the numbers, [`DEFAULT_FPS`](crate::DEFAULT_FPS) of them a second. A number that is left out is an error when
+/// its time comes.
+///
 /// # Errors
-/// As [`load`]; a clip of an unknown name.
-pub fn open(path: &Path, options: &LoadOptions, _animation: &AnimationOptions) -> Result<Animation> {
-    load(path, options).map(Animation::still)
+/// As [`load`]; a clip of an unknown name; a pattern that no file matches.
+pub fn open(path: &Path, options: &LoadOptions, animation: &AnimationOptions) -> Result<Animation> {
+    let inside = path.join("scene.toml");
+    let path = if path.is_dir() { inside.as_path() } else { path };
+    let opened = match (ending(path).as_deref(), pattern_of(path)?) {
+        (Some("obj"), Some((pattern, folder))) => open_sequence(pattern, &folder, options),
+        (Some("obj"), None) => {
+            let bytes = read_file(path, options.max_mesh_bytes)?;
+            load_mesh(&bytes, path, path.parent(), options).map(Animation::still)
+        }
+        (Some("toml"), _) => crate::description::open(path, options),
+        _ if path.exists() => Err(Error::UnknownFormat { path: path.to_owned() }),
+        // A name that does not exist is told with its neighbours rather than by its ending.
+        _ => read_file(path, 0).and(Err(Error::UnknownFormat { path: path.to_owned() })),
+    }?;
+    match &animation.clip {
+        Some(clip) if !opened.clips.iter().any(|known| known.name == *clip) => {
+            let known = opened.clips.iter().map(|clip| clip.name.clone()).collect();
+            Err(Error::UnknownClip { clip: clip.clone(), known })
+        }
+        _ => Ok(opened),
+    }
+}
+
+/// The ending of a file's name, in small letters.
+fn ending(path: &Path) -> Option<String> {
+    path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
+}
+
+fn open_sequence(pattern: Pattern, folder: &Path, options: &LoadOptions) -> Result<Animation> {
+    let sequence = Sequence::numbered(pattern, folder, Range::default(), true).map_err(|message| Error::Sequence { message })?;
+    let edit = Edit { name: Some(sequence.title()), ..Edit::default() };
+    let track = KeyTrack { sequence: Arc::new(sequence), fps: DEFAULT_FPS, start: 0.0, looped: false, interpolate: true, edit };
+    let mut assets = Assets::new(Some(folder), options)?;
+    let mut cache = Cache::new(options.max_key_cache_bytes);
+    let mesh = first_mesh(&mut assets, &mut cache, &track)?;
+    let mut animation = Animation::still(with_default_light(assets.scene(vec![mesh])));
+    animation.motions = vec![Motion::Keys];
+    animation.set_course(&[track.course()], None, None);
+    animation.keys = Some(KeyReader::new(vec![Some(track.clone())], assets, cache, &animation.scene.warnings));
+    animation.tracks.meshes = vec![MeshTrack::Keys(track)];
+    Ok(animation)
 }
 
 /// Reads an OBJ stream, such as standard input. Materials are looked for below `folder`; without one none is opened.
@@ -46,17 +85,14 @@ pub fn open(path: &Path, options: &LoadOptions, _animation: &AnimationOptions) -
 /// As [`load`]; the file in messages is `-`.
 pub fn load_reader(reader: &mut dyn Read, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
     let bytes = read_stream(reader, Path::new("-"), options.max_mesh_bytes)?;
-    load_obj(&bytes, Path::new("-"), folder, options)
+    load_mesh(&bytes, Path::new("-"), folder, options)
 }
 
-fn load_obj(bytes: &[u8], path: &Path, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
-    let files = Files::new(folder, options.allow_external_paths)?;
-    let mut textures = Textures::new(&files, options);
-    let mut materials = vec![Material::default()];
-    let mut warnings = Vec::new();
-    let mut target = Target { files: &files, options, textures: &mut textures, materials: &mut materials, warnings: &mut warnings };
-    let mesh = obj_scene::read(&mut target, bytes, &path.to_string_lossy(), &stem(path), files.root(), 0)?;
-    Ok(with_default_light(Scene { meshes: vec![mesh], materials, textures: textures.textures, warnings, ..empty() }))
+fn load_mesh(bytes: &[u8], path: &Path, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
+    let mut assets = Assets::new(folder, options)?;
+    let root = assets.files.clone();
+    let mesh = mesh_file::parse(&mut assets, bytes, &path.to_string_lossy(), &stem(path), root.root())?;
+    Ok(with_default_light(assets.scene(vec![mesh])))
 }
 
 /// A mesh from memory as a whole scene, such as those of [`generate`](crate::generate): the default material (whatever numbers

@@ -3,26 +3,17 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::files::Files;
+use crate::assets::Assets;
 use crate::lines::words;
 use crate::mtl::{self, Map, MtlMaterial};
 use crate::obj;
 use crate::suggest::closest;
-use crate::texture::{Textures, Use, holds_normals};
-use crate::{Error, LoadOptions, Material, Mesh, Result};
-
-/// What an OBJ file is resolved against, and what it adds to.
-pub(crate) struct Target<'a, 'b> {
-    pub(crate) files: &'a Files,
-    pub(crate) options: &'a LoadOptions,
-    pub(crate) textures: &'a mut Textures<'b>,
-    pub(crate) materials: &'a mut Vec<Material>,
-    pub(crate) warnings: &'a mut Vec<String>,
-}
+use crate::texture::Use;
+use crate::{Error, Material, Mesh, Result};
 
 /// Reads an OBJ file's bytes. `folder` is where its MTL files are looked for; `default_material` serves faces that name none.
 pub(crate) fn read(
-    target: &mut Target<'_, '_>,
+    assets: &mut Assets,
     bytes: &[u8],
     file: &str,
     name: &str,
@@ -30,15 +21,15 @@ pub(crate) fn read(
     default_material: u32,
 ) -> Result<Mesh> {
     let mut obj = obj::parse(bytes, file, name)?;
-    target.warnings.append(&mut obj.warnings);
+    assets.warnings.append(&mut obj.warnings);
 
     let mut known: Vec<(MtlMaterial, usize)> = Vec::new();
     let mut libraries = Vec::new();
     for (names, line) in &obj.libraries {
         let mut place = Place { file, line: *line };
-        for (path, bytes) in open_libraries(target, names, &mut place, folder) {
+        for (path, bytes) in open_libraries(assets, names, &mut place, folder) {
             let shown = path.file_name().map_or_else(|| file.to_owned(), |name| name.to_string_lossy().into_owned());
-            let materials = mtl::parse(&bytes, &shown, target.warnings);
+            let materials = mtl::parse(&bytes, &shown, &mut assets.warnings);
             known.extend(materials.into_iter().map(|material| (material, libraries.len())));
             libraries.push((path.parent().map(Path::to_owned).unwrap_or_default(), shown));
         }
@@ -59,9 +50,8 @@ pub(crate) fn read(
                 None => {
                     let (material, library) = &known[at];
                     let (folder, file) = &libraries[*library];
-                    let number = target.materials.len() as u32;
-                    let material = resolve(target, material, folder, file);
-                    target.materials.push(material);
+                    let material = resolve(assets, material, folder, file);
+                    let number = assets.material(material);
                     made.insert(at, number);
                     number
                 }
@@ -70,7 +60,7 @@ pub(crate) fn read(
                 missing += 1;
                 if missing <= 20 {
                     let hint = closest(name, by_name.keys().copied()).map(|near| format!(" (there is \"{near}\")")).unwrap_or_default();
-                    target.warnings.push(format!("{file}:{line}: no material \"{name}\"{hint}; the default material is used"));
+                    assets.warnings.push(format!("{file}:{line}: no material \"{name}\"{hint}; the default material is used"));
                 }
                 default_material
             }
@@ -78,7 +68,7 @@ pub(crate) fn read(
         numbers.push(number);
     }
     if missing > 20 {
-        target.warnings.push(format!("{file}: {} more materials are missing", missing - 20));
+        assets.warnings.push(format!("{file}: {} more materials are missing", missing - 20));
     }
     for material in &mut obj.mesh.materials {
         *material = numbers.get(*material as usize).copied().unwrap_or(default_material);
@@ -92,20 +82,15 @@ struct Place<'a> {
 }
 
 /// The rest of an `mtllib` line is one name with blanks, or several names.
-fn open_libraries(
-    target: &mut Target<'_, '_>,
-    names: &str,
-    place: &mut Place<'_>,
-    folder: Option<&Path>,
-) -> Vec<(std::path::PathBuf, Vec<u8>)> {
+fn open_libraries(assets: &mut Assets, names: &str, place: &mut Place<'_>, folder: Option<&Path>) -> Vec<(std::path::PathBuf, Vec<u8>)> {
     let Some(folder) = folder else {
-        target.warnings.push(format!("{}:{}: the materials of a stream are not read", place.file, place.line));
+        assets.warnings.push(format!("{}:{}: the materials of a stream are not read", place.file, place.line));
         return Vec::new();
     };
-    let limit = target.options.max_material_bytes;
+    let limit = assets.options.max_material_bytes;
     let open = |name: &str| -> Result<(std::path::PathBuf, Vec<u8>)> {
-        let path = target.files.find(folder, name)?;
-        let bytes = target.files.read(&path, limit)?;
+        let path = assets.files.find(folder, name)?;
+        let bytes = assets.files.read(&path, limit)?;
         Ok((path, bytes))
     };
     let whole = match open(names) {
@@ -114,25 +99,25 @@ fn open_libraries(
     };
     let parts: Vec<String> = words(names.as_bytes()).take(64).map(|name| String::from_utf8_lossy(name).into_owned()).collect();
     if parts.len() < 2 || !matches!(whole, Error::NotFound { .. }) {
-        target.warnings.push(format!("{}:{}: materials are not read: {whole}", place.file, place.line));
+        assets.warnings.push(format!("{}:{}: materials are not read: {whole}", place.file, place.line));
         return Vec::new();
     }
     let mut opened = Vec::new();
     for part in parts {
         match open(&part) {
             Ok(file) => opened.push(file),
-            Err(error) => target.warnings.push(format!("{}:{}: materials are not read: {error}", place.file, place.line)),
+            Err(error) => assets.warnings.push(format!("{}:{}: materials are not read: {error}", place.file, place.line)),
         }
     }
     opened
 }
 
 /// Makes a material, its textures loaded. `folder` and `file` are those of the MTL file.
-fn resolve(target: &mut Target<'_, '_>, from: &MtlMaterial, folder: &Path, file: &str) -> Material {
+fn resolve(assets: &mut Assets, from: &MtlMaterial, folder: &Path, file: &str) -> Material {
     let mut load = |map: &Option<Map>, usage: Use| -> Option<u32> {
         let map = map.as_ref()?;
-        target.textures.load(folder, &map.file, usage).unwrap_or_else(|message| {
-            target.warnings.push(format!("{file}:{}: no texture: {message}", map.line));
+        assets.textures.load(folder, &map.file, usage).unwrap_or_else(|message| {
+            assets.warnings.push(format!("{file}:{}: no texture: {message}", map.line));
             None
         })
     };
@@ -146,7 +131,7 @@ fn resolve(target: &mut Target<'_, '_>, from: &MtlMaterial, folder: &Path, file:
     let emission_map = load(&from.emission_map, Use::Colour);
     let normals = load(&from.normal_map, Use::Data);
     let bumps = if normals.is_none() { load(&from.bump_map, Use::Data) } else { None };
-    let bump_is_height = bumps.and_then(|map| target.textures.textures.get(map as usize)).is_some_and(|texture| !holds_normals(texture));
+    let bump_is_height = bumps.is_some_and(|map| assets.textures.is_height(map));
 
     let defaults = Material::default();
     // A map without its factor is meant to be seen as it is.

@@ -5,7 +5,7 @@
 pub struct LoadOptions {
     /// Also open files outside the scene's folder (by absolute paths, `..` or symbolic links).
     pub allow_external_paths: bool,
-    /// Cap for an OBJ file in bytes.
+    /// Cap for a mesh file in bytes, unpacked.
     pub max_mesh_bytes: u64,
     /// Cap for an MTL file in bytes.
     pub max_material_bytes: u64,
@@ -17,6 +17,8 @@ pub struct LoadOptions {
     pub max_texture_size: u32,
     /// Cap for the pixels of all pictures of a scene together, in bytes.
     pub max_texture_total_bytes: u64,
+    /// Memory for meshes of key-frames that may be wanted again, in bytes; 0 reads every file anew.
+    pub max_key_cache_bytes: u64,
 }
 
 impl Default for LoadOptions {
@@ -29,6 +31,7 @@ impl Default for LoadOptions {
             max_texture_bytes: 256 << 20,
             max_texture_size: 16_384,
             max_texture_total_bytes: 4 << 30,
+            max_key_cache_bytes: 256 << 20,
         }
     }
 }

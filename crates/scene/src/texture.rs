@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::{DynamicImage, ImageFormat, ImageReader};
 
@@ -23,17 +24,31 @@ pub(crate) enum Use {
 }
 
 /// All textures of a scene.
-pub(crate) struct Textures<'a> {
-    files: &'a Files,
-    options: &'a LoadOptions,
+#[derive(Clone, Debug)]
+pub(crate) struct Textures {
+    files: Arc<Files>,
+    options: Arc<LoadOptions>,
     loaded: HashMap<(PathBuf, Use), Option<u32>>,
     total_bytes: u64,
-    pub(crate) textures: Vec<Texture>,
+    /// Of each texture, those taken included, whether it holds normals.
+    normals: Vec<bool>,
+    /// Those that were not taken yet: the last ones by number.
+    textures: Vec<Texture>,
 }
 
-impl<'a> Textures<'a> {
-    pub(crate) fn new(files: &'a Files, options: &'a LoadOptions) -> Self {
-        Self { files, options, loaded: HashMap::new(), total_bytes: 0, textures: Vec::new() }
+impl Textures {
+    pub(crate) fn new(files: Arc<Files>, options: Arc<LoadOptions>) -> Self {
+        Self { files, options, loaded: HashMap::new(), total_bytes: 0, normals: Vec::new(), textures: Vec::new() }
+    }
+
+    /// Hands over the textures that came since the last time. Numbers go on counting.
+    pub(crate) fn take(&mut self) -> Vec<Texture> {
+        std::mem::take(&mut self.textures)
+    }
+
+    /// Whether a texture that was loaded as [`Use::Data`] holds heights rather than normals.
+    pub(crate) fn is_height(&self, number: u32) -> bool {
+        self.normals.get(number as usize).is_some_and(|normals| !normals)
     }
 
     /// The number of a texture that a file in `folder` names; `Err` holds the reason in words, once for each file and use.
@@ -50,7 +65,7 @@ impl<'a> Textures<'a> {
 
     fn read(&mut self, path: &Path, name: &str, usage: Use) -> Result<Option<u32>, String> {
         let bytes = self.files.read(path, self.options.max_texture_bytes).map_err(|error| error.to_string())?;
-        let picture = decode(&bytes, self.options).map_err(|message| format!("{name}: {message}"))?;
+        let picture = decode(&bytes, &self.options).map_err(|message| format!("{name}: {message}"))?;
         let coloured_alpha = picture.color().has_alpha();
         let (width, height) = (picture.width(), picture.height());
         let mut pixels = picture.into_rgba8().into_raw();
@@ -82,9 +97,11 @@ impl<'a> Textures<'a> {
         }
         let (texels, _) = pixels.as_chunks::<4>();
         let has_alpha = texels.iter().any(|texel| texel[3] < 255);
-        let number = u32::try_from(self.textures.len()).map_err(|_| format!("{name}: too many textures"))?;
+        let number = u32::try_from(self.normals.len()).map_err(|_| format!("{name}: too many textures"))?;
         self.total_bytes += size;
-        self.textures.push(Texture { name: name.to_owned(), width, height, pixels, srgb: usage == Use::Colour, has_alpha });
+        let texture = Texture { name: name.to_owned(), width, height, pixels, srgb: usage == Use::Colour, has_alpha };
+        self.normals.push(usage == Use::Data && holds_normals(&texture));
+        self.textures.push(texture);
         Ok(Some(number))
     }
 }
@@ -119,7 +136,7 @@ fn looks_like_tga(bytes: &[u8]) -> bool {
 }
 
 /// Whether a bump map holds normals: bluish nearly everywhere, where a map of heights is grey. Exporters write both after `map_bump`.
-pub(crate) fn holds_normals(texture: &Texture) -> bool {
+fn holds_normals(texture: &Texture) -> bool {
     let (texels, _) = texture.pixels.as_chunks::<4>();
     let step = (texels.len() / 4096).max(1);
     let mut seen = 0_u32;

@@ -11,6 +11,8 @@ pub(crate) struct Transform {
 }
 
 impl Transform {
+    pub(crate) const IDENTITY: Self = Self { rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation: [0.0; 3] };
+
     /// Scales, then turns about x, y and z in this order (degrees, counterclockwise seen from the axis' tip), then moves.
     pub(crate) fn new(scale: Vector, rotation: Vector, translation: Vector) -> Self {
         let [x, y, z] = rotation.map(quarter_exact);
@@ -43,8 +45,7 @@ impl Transform {
     /// Moves a mesh's vertices and normals. A mirroring map also turns the winding of the triangles, so that it goes on to agree with the
     /// normals.
     pub(crate) fn apply(&self, mesh: &mut Mesh) {
-        let identity = Self { rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation: [0.0; 3] };
-        if *self == identity {
+        if *self == Self::IDENTITY {
             return;
         }
         for position in &mut mesh.positions {
@@ -68,6 +69,41 @@ impl Transform {
                 triangle.swap(1, 2);
             }
         }
+    }
+}
+
+/// What a scene file does to a mesh after it was read.
+#[derive(Clone, Debug)]
+pub(crate) struct Edit {
+    /// Instead of the file's name.
+    pub(crate) name: Option<String>,
+    /// For all triangles, instead of the file's own.
+    pub(crate) material: Option<u32>,
+    /// A factor on texture coordinates.
+    pub(crate) uv_scale: Option<f32>,
+    pub(crate) transform: Transform,
+}
+
+impl Default for Edit {
+    fn default() -> Self {
+        Self { name: None, material: None, uv_scale: None, transform: Transform::IDENTITY }
+    }
+}
+
+impl Edit {
+    pub(crate) fn apply(&self, mesh: &mut Mesh) {
+        if let Some(name) = &self.name {
+            mesh.name.clone_from(name);
+        }
+        if let Some(material) = self.material {
+            mesh.materials.fill(material);
+        }
+        if let Some(scale) = self.uv_scale {
+            for uv in mesh.uvs.as_flattened_mut() {
+                *uv *= scale;
+            }
+        }
+        self.transform.apply(mesh);
     }
 }
 

@@ -37,6 +37,9 @@ pub struct Mesh {
     pub normals: Vec<[f32; 3]>,
     /// Texture coordinates, one a vertex, zeros where the file has none. (0, 0) is the lower left corner of a picture.
     pub uvs: Vec<[f32; 2]>,
+    /// Colours that multiply the diffuse colour of the material, linear RGB, one a vertex; empty where the file has none, which is as if all
+    /// were one.
+    pub colours: Vec<[f32; 3]>,
     /// Three vertex indices a triangle, each below `positions.len()`.
     pub indices: Vec<[u32; 3]>,
     /// One index into [`Scene::materials`] a triangle.
@@ -242,6 +245,17 @@ pub struct Bounds {
 }
 
 impl Mesh {
+    /// What the vectors hold, in bytes.
+    pub(crate) fn byte_count(&self) -> u64 {
+        let bytes = size_of_val(&*self.positions)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.uvs)
+            + size_of_val(&*self.colours)
+            + size_of_val(&*self.indices)
+            + size_of_val(&*self.materials);
+        bytes as u64
+    }
+
     /// The box of all triangles whose vertices are finite; `None` where there is no such triangle.
     pub fn bounds(&self) -> Option<Bounds> {
         let mut bounds: Option<Bounds> = None;
@@ -285,17 +299,19 @@ impl Scene {
     /// The camera of that name, or without a name the one in [`RenderDefaults::camera`], else the first, else one that frames the scene.
     /// `None` only where a name is given that no camera has.
     pub fn camera(&self, name: Option<&str>) -> Option<Camera> {
-        let find = |name: &str| self.cameras.iter().find(|camera| camera.name == name).map(|camera| camera.camera);
+        match (self.camera_number(name), name) {
+            (Some(number), _) => self.cameras.get(number).map(|camera| camera.camera),
+            (None, Some(_)) => None,
+            (None, None) => Some(self.frame(&crate::Framing { up: self.up, ..crate::Framing::default() })),
+        }
+    }
+
+    /// Which of the cameras [`Scene::camera`] takes; `None` where it takes none of them.
+    pub(crate) fn camera_number(&self, name: Option<&str>) -> Option<usize> {
+        let find = |name: &str| self.cameras.iter().position(|camera| camera.name == name);
         match name {
             Some(name) => find(name),
-            None => Some(
-                self.defaults
-                    .camera
-                    .as_deref()
-                    .and_then(find)
-                    .or_else(|| self.cameras.first().map(|camera| camera.camera))
-                    .unwrap_or_else(|| self.frame(&crate::Framing { up: self.up, ..crate::Framing::default() })),
-            ),
+            None => self.defaults.camera.as_deref().and_then(find).or_else(|| (!self.cameras.is_empty()).then_some(0)),
         }
     }
 

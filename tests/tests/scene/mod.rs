@@ -1,5 +1,6 @@
 //! Scene files: what is read from good ones, what is said about bad ones, and what is never opened.
 
+mod animation;
 mod committed;
 mod fuzz;
 mod nasty;

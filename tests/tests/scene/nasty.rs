@@ -315,12 +315,12 @@ fn toml_cases() -> Vec<Case> {
         (
             "a file and a shape",
             described("[[mesh]]\nfile = \"a.obj\"\nshape = \"box\"\n"),
-            Error("DIR/scene.toml:1: a mesh needs file = \"name.obj\" or shape = \"sphere\""),
+            Error("DIR/scene.toml:1: a mesh needs one of: file = \"name.obj\", sequence = \"name.%04d.obj\", shape = \"sphere\""),
         ),
         (
             "neither",
             described("\n[[mesh]]\nname = \"a\"\n"),
-            Error("DIR/scene.toml:2: a mesh needs file = \"name.obj\" or shape = \"sphere\""),
+            Error("DIR/scene.toml:2: a mesh needs one of: file = \"name.obj\", sequence = \"name.%04d.obj\", shape = \"sphere\""),
         ),
         ("a mesh file that is not there", described("[[mesh]]\nfile = \"a.obj\"\n"), Error("DIR/scene.toml:2: a.obj does not exist")),
         (
