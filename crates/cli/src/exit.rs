@@ -112,8 +112,8 @@ impl From<gridwalk_render::gridwalk_scene::Error> for Failure {
 impl From<ImageError> for Failure {
     fn from(error: ImageError) -> Failure {
         let exit = match &error {
-            ImageError::Write { .. } | ImageError::Exists { .. } | ImageError::Encode { .. } => Exit::Output,
-            ImageError::UnknownFormat { .. } => Exit::Usage,
+            ImageError::Write { .. } | ImageError::Exists { .. } | ImageError::Encode { .. } | ImageError::Ffmpeg { .. } => Exit::Output,
+            ImageError::UnknownFormat { .. } | ImageError::Movie { .. } => Exit::Usage,
             _ => Exit::Input,
         };
         Failure { exit, error: error.into() }

@@ -69,6 +69,22 @@ pub enum Error {
         /// What the encoder said.
         reason: String,
     },
+    /// What a movie's format cannot hold.
+    #[error("{}: {reason}", .path.display())]
+    Movie {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and the cure.
+        reason: String,
+    },
+    /// ffmpeg, which writes some formats, is not there or has failed.
+    #[error("cannot write {} by ffmpeg: {reason}", .path.display())]
+    Ffmpeg {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong: the cure, or what ffmpeg said.
+        reason: String,
+    },
     /// A layer that is needed is not there, or has the wrong kind of values.
     #[error("the picture has no usable layer {name}: {reason}")]
     Layer {

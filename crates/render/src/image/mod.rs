@@ -1,27 +1,38 @@
-//! Image files: layers out as PNG and EXR, heat maps, and the comparison of two pictures.
+//! Image files: layers out as PNG and EXR, frames out as movies, heat maps, and the comparison of two pictures.
 //!
 //! Pure CPU code. PNG holds what a viewer shows: exposure, a tone map, the sRGB curve, eight bits. EXR holds what was measured: linear,
 //! untouched, 32 bits, identifiers as integers. Files are written beside their final place and renamed, so that no reader, no crash and no
 //! full disk ever leaves half a picture under the name that was asked for.
 
+mod apng;
 mod diff;
 mod error;
 mod exr;
+mod ffmpeg;
 mod file;
 mod font;
+mod gif;
 mod heatmap;
+mod movie;
 mod png;
+mod rate;
 mod read;
 mod tonemap;
+mod y4m;
 
+pub use apng::ApngEncoder;
 pub use diff::{Difference, LayerDifference, diff};
 pub use error::{Error, Result};
 pub use exr::encode_exr;
 pub use file::{Overwrite, SeekWrite, write_file};
+pub use gif::GifEncoder;
 pub use heatmap::{Heatmap, heatmap, ramp};
+pub use movie::{MovieDesc, MovieFormat, MovieWriter};
 pub use png::{PngOptions, Rgb8, encode_png, tonemapped};
+pub use rate::Rate;
 pub use read::{ReadLimits, read};
 pub use tonemap::{Tonemap, srgb_decode, srgb_encode, srgb_encode_u8};
+pub use y4m::{Chroma, Matrix, Y4mEncoder};
 
 /// A value of the metadata that goes into a picture file.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +88,7 @@ fn latin1(text: &str) -> String {
     text.chars().map(|c| if (c as u32) < 0x20 || (0x7f..0xa0).contains(&(c as u32)) || c as u32 > 0xff { '?' } else { c }).collect()
 }
 
-/// The kinds of picture file that are written.
+/// The kinds of file that hold one picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Eight bits, tone mapped.
