@@ -222,6 +222,8 @@ pub struct FrameStats {
     pub rays: RayCounts,
     /// Device milliseconds of the traces; 0 without timestamps.
     pub trace_ms: f64,
+    /// Milliseconds of reading the pixels back and putting the picture together.
+    pub readback_ms: f64,
     /// Milliseconds from the first submission to the last byte read back.
     pub frame_ms: f64,
     /// Device milliseconds by step, in the order of a frame.

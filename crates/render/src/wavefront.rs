@@ -204,13 +204,17 @@ impl Renderer {
                 }
                 batch.count_rays(&mut stats)?;
             }
+            let read = Instant::now();
             batch.read(&mut picture, first, count, &mut stats)?;
+            stats.readback_ms += read.elapsed().as_secs_f64() * 1e3;
             first += count;
         }
         stats.steps = timer.take();
         let traces = ["closest_hit", "any_hit", "masked_closest_hit", "masked_any_hit"];
         stats.trace_ms = stats.steps.iter().filter(|step| traces.contains(&step.name)).map(|step| step.ms).sum();
+        let read = Instant::now();
         let layers = picture.finish()?;
+        stats.readback_ms += read.elapsed().as_secs_f64() * 1e3;
         stats.frame_ms = begin.elapsed().as_secs_f64() * 1e3;
         Ok(Frame { layers, stats, build: grid.stats().clone() })
     }

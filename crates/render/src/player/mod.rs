@@ -67,6 +67,14 @@ impl Player {
         Ok(SeekStats { rebuilt: true, ..SeekStats::new(self.grid.stats()) })
     }
 
+    /// Builds the grid again from nothing, to measure.
+    ///
+    /// # Errors
+    /// As [`Grid::rebuild`].
+    pub fn rebuild(&mut self) -> Result<()> {
+        self.grid.rebuild(&self.scene)
+    }
+
     /// The animation.
     pub fn animation(&self) -> &Animation {
         &self.animation
