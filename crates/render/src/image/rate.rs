@@ -30,7 +30,7 @@ impl Rate {
             return None;
         }
         let television = (number * 1.001).round();
-        if number.fract() != 0.0 && television % 6.0 == 0.0 && (television * 1000.0 / 1001.0 - number).abs() < 0.005 {
+        if number.fract() != 0.0 && television >= 6.0 && television % 6.0 == 0.0 && (television * 1000.0 / 1001.0 - number).abs() < 0.005 {
             return Rate::new((television * 1000.0) as u32, 1001);
         }
         // Convergents of the continued fraction.
@@ -38,8 +38,9 @@ impl Rate {
         let mut rest = number;
         for _ in 0..32 {
             let whole = rest.floor();
-            let next =
-                ((whole as u64).checked_mul(now.0)?.checked_add(before.0)?, (whole as u64).checked_mul(now.1)?.checked_add(before.1)?);
+            // Saturated ones are beyond the largest denominator.
+            let follow = |now: u64, before: u64| (whole as u64).saturating_mul(now).saturating_add(before);
+            let next = (follow(now.0, before.0), follow(now.1, before.1));
             if next.1 > MAX_DENOMINATOR.into() {
                 break;
             }
