@@ -72,6 +72,8 @@ enum Scenes {
         #[arg(long, value_name = "DIR")]
         into: Option<PathBuf>,
     },
+    /// Make the key-frames of the committed scene `drops` anew
+    Drops,
 }
 
 #[derive(Subcommand)]
@@ -103,6 +105,7 @@ fn run(tool: Tool) -> Result<ExitCode> {
         Tool::Bless { filter } => return bless::run(&root, filter.as_deref()),
         Tool::Scenes { action: Scenes::List } => scenes::list(),
         Tool::Scenes { action: Scenes::Get { name, into } } => scenes::get(&name, into.as_deref())?,
+        Tool::Scenes { action: Scenes::Drops } => scenes::drops::write(&root.join("scenes/drops"))?,
         Tool::Drivers { action: Drivers::List } => drivers::list(),
         Tool::Drivers { action: Drivers::Get { name } } => drivers::get(&name)?,
         Tool::Bench { options } => {

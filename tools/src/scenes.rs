@@ -12,6 +12,7 @@ use anyhow::{Context, Result, bail};
 use crate::{apt, process};
 
 mod compose;
+pub mod drops;
 mod g3d;
 mod mesh;
 

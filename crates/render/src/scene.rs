@@ -158,6 +158,22 @@ impl GpuScene {
         self.has_mirrors
     }
 
+    /// Brings the positions back to the host, as the grid is built of them; those that no triangle names may hold anything.
+    ///
+    /// # Errors
+    /// Those of [`Buffer::read`].
+    pub fn read_positions(&self) -> Result<Vec<[f32; 3]>> {
+        self.positions.read(0, self.vertex_count as usize)
+    }
+
+    /// Brings the triangles of all meshes back to the host.
+    ///
+    /// # Errors
+    /// Those of [`Buffer::read`].
+    pub fn read_indices(&self) -> Result<Vec<[u32; 3]>> {
+        self.indices.read(0, self.triangle_count as usize)
+    }
+
     /// Bytes of device memory.
     pub fn bytes(&self) -> u64 {
         self.bytes

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Measures rebuilds and rays of gridwalk, with Embree as rival on the same triangles and rays where it is installed.
 ///
@@ -10,20 +10,77 @@ use clap::{Parser, ValueEnum};
 /// faster than Embree; on a CPU driver there is a ratio of processor times too, which other work on the machine disturbs least. On lavapipe both
 /// use the same number of threads. Standard output carries the table, or JSON with `--json -`.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "gridwalk-bench", bin_name = "cargo tool bench", version)]
+#[command(name = "gridwalk-bench", bin_name = "cargo tool bench", version, args_conflicts_with_subcommands = true)]
 pub struct Arguments {
+    /// What else can be measured
+    #[command(subcommand)]
+    pub mode: Option<Mode>,
+
     /// Scenes: files (.obj, .toml), names (bunny, dragon, sponza, elephant) looked up in the folders of GRIDWALK_SCENES and in the cache of
     /// `cargo tool scenes`, or made ones by number of triangles (sphere:N, bumpy:N, terrain:N, soup:N, stadium:N) [default: bumpy:70000]
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
 
-    /// Also look for scenes by name in this folder
-    #[arg(long, value_name = "DIR")]
-    pub folder: Vec<PathBuf>,
+    /// What every measurement needs
+    #[command(flatten)]
+    pub common: Common,
 
     /// Runs after the warm-up
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,
+
+    /// Measure these alone: camera and diffuse are closest hits, any is any hit on the diffuse rays [default: all]
+    #[arg(long, value_delimiter = ',', value_name = "WHAT")]
+    pub only: Vec<Part>,
+
+    /// Quality of the tree that Embree's rays are traced through
+    #[arg(long, default_value = "medium")]
+    pub embree_quality: Quality,
+
+    /// Of the rebuild's steps, show only those whose name holds this (all are measured)
+    #[arg(long, value_name = "TEXT")]
+    pub filter_steps: Option<String>,
+}
+
+/// Other measurements.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Mode {
+    /// Plays animations, everything rebuilt each frame, with Embree doing the same on the same triangles and rays
+    ///
+    /// A frame has camera rays, shadow rays from what they hit to the first light, a reflection ray from each hit, and shadow rays from
+    /// what these hit. Our times are device times, Embree's wall times, of its fastest rebuild and of single rays through the tree that it
+    /// makes; medians over the runs of a frame, taken in turns. Making the rays costs neither of them anything.
+    Dynamic(Dynamic),
+}
+
+/// Arguments of `dynamic`.
+#[derive(Clone, Debug, Args)]
+pub struct Dynamic {
+    /// Scenes: files, key-frame patterns, or names looked up in the folders of GRIDWALK_SCENES and in the cache of `cargo tool scenes`:
+    /// gallop (24 key-frames of an elephant), herd (twelve of them, out of step), forest, fox, man, morph, engine; or made ones that sway
+    /// (sphere:N, bumpy:N, terrain:N, soup:N, stadium:N) [default: bumpy:70000]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+
+    /// Frames of each scene, evenly over its duration [default: all at its own rate, at most 24]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub frames: Option<u32>,
+
+    /// Runs of each frame
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub runs: u32,
+
+    /// What every measurement needs
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Arguments of all measurements.
+#[derive(Clone, Debug, Args)]
+pub struct Common {
+    /// Also look for scenes by name in this folder
+    #[arg(long, value_name = "DIR")]
+    pub folder: Vec<PathBuf>,
 
     /// Density k: cells a triangle [default: the library's]
     #[arg(long)]
@@ -41,10 +98,6 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 
-    /// Measure these alone: camera and diffuse are closest hits, any is any hit on the diffuse rays [default: all]
-    #[arg(long, value_delimiter = ',', value_name = "WHAT")]
-    pub only: Vec<Part>,
-
     /// Threads of Embree, and of lavapipe by LP_NUM_THREADS [default: LP_NUM_THREADS, or the machine's]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
@@ -57,17 +110,9 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     pub embree: Option<PathBuf>,
 
-    /// Quality of the tree that Embree's rays are traced through
-    #[arg(long, default_value = "medium")]
-    pub embree_quality: Quality,
-
     /// Device: cpu, best, an index, a UUID or a part of the name
     #[arg(long, default_value = "best", env = "GRIDWALK_DEVICE")]
     pub device: String,
-
-    /// Of the rebuild's steps, show only those whose name holds this (all are measured)
-    #[arg(long, value_name = "TEXT")]
-    pub filter_steps: Option<String>,
 
     /// Write all figures as JSON; `-` is standard output, and the table then goes to standard error
     #[arg(long, value_name = "FILE")]

@@ -3,12 +3,16 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics"))]
 
 mod arguments;
+mod dynamic;
+mod dynamic_report;
 #[allow(unsafe_code, reason = "calls a C library")]
 mod embree;
 mod measure;
+mod moving;
 mod rays;
 mod report;
 mod scenes;
+mod vector;
 
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -16,8 +20,9 @@ use std::time::Instant;
 use anyhow::{Context as _, Result};
 use clap::Parser;
 use gridwalk_render::{Context, ContextDesc, GridBuilder};
+use serde::Serialize;
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Common, Dynamic, Mode};
 use crate::embree::Embree;
 use crate::report::{Report, Rival};
 
@@ -36,17 +41,33 @@ fn main() -> ExitCode {
 }
 
 fn start(arguments: &Arguments) -> Result<ExitCode> {
+    let common = match &arguments.mode {
+        Some(Mode::Dynamic(dynamic)) => &dynamic.common,
+        None => &arguments.common,
+    };
     // The driver reads its environment when it is loaded, and setting a variable of one's own process is unsafe: so start again with it.
-    if let Some(threads) = arguments.threads.filter(|threads| std::env::var(LAVAPIPE_THREADS) != Ok(threads.to_string())) {
+    if let Some(threads) = common.threads.filter(|threads| std::env::var(LAVAPIPE_THREADS) != Ok(threads.to_string())) {
         let mut command = Command::new(std::env::current_exe().context("where is this program?")?);
         let status = command.args(std::env::args_os().skip(1)).env(LAVAPIPE_THREADS, threads.to_string()).status();
         let code = status.context("cannot be started again")?.code().and_then(|code| u8::try_from(code).ok());
         return Ok(code.map_or(ExitCode::FAILURE, ExitCode::from));
     }
-    let report = run(arguments)?;
-    let table = report.table(arguments.filter_steps.as_deref());
-    let json = || serde_json::to_string_pretty(&report).context("JSON");
-    match &arguments.json {
+    match &arguments.mode {
+        Some(Mode::Dynamic(dynamic)) => {
+            let report = run_dynamic(dynamic)?;
+            write(common, &report, &report.table())?;
+        }
+        None => {
+            let report = run(arguments)?;
+            write(common, &report, &report.table(arguments.filter_steps.as_deref()))?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write(common: &Common, report: &impl Serialize, table: &str) -> Result<()> {
+    let json = || serde_json::to_string_pretty(report).context("JSON");
+    match &common.json {
         Some(path) if path.as_os_str() == "-" => {
             eprint!("{table}");
             println!("{}", json()?);
@@ -57,22 +78,38 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
         }
         None => print!("{table}"),
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }
 
-fn threads(arguments: &Arguments) -> u32 {
+fn threads(common: &Common) -> u32 {
     let set = || std::env::var(LAVAPIPE_THREADS).ok()?.parse().ok();
     let machine = || std::thread::available_parallelism().map_or(1, |count| u32::try_from(count.get()).unwrap_or(1));
-    arguments.threads.or_else(set).unwrap_or_else(machine).max(1)
+    common.threads.or_else(set).unwrap_or_else(machine).max(1)
+}
+
+/// The rival, where it is installed and wanted, and the device.
+fn open(common: &Common) -> Result<(Option<Embree>, Context)> {
+    let embree = if common.no_embree { None } else { Embree::load(common.embree.as_deref(), threads(common))? };
+    if embree.is_none() && !common.no_embree {
+        eprintln!("gridwalk-bench: Embree is not installed (Debian: apt-get install libembree3-3 or libembree4-4): measuring without it");
+    }
+    let Ok(device) = common.device.parse();
+    let context = Context::new(&ContextDesc { device, name: "gridwalk-bench", ..ContextDesc::default() })?;
+    Ok((embree, context))
+}
+
+fn rival(embree: &Embree, trace_quality: &str) -> Rival {
+    Rival {
+        version: embree.version(),
+        library: embree.path().display().to_string(),
+        threads: embree.threads(),
+        trace_quality: trace_quality.to_owned(),
+    }
 }
 
 fn run(arguments: &Arguments) -> Result<Report> {
-    let embree = if arguments.no_embree { None } else { Embree::load(arguments.embree.as_deref(), threads(arguments))? };
-    if embree.is_none() && !arguments.no_embree {
-        eprintln!("gridwalk-bench: Embree is not installed (Debian: apt-get install libembree3-3 or libembree4-4): measuring without it");
-    }
-    let Ok(device) = arguments.device.parse();
-    let context = Context::new(&ContextDesc { device, name: "gridwalk-bench", ..ContextDesc::default() })?;
+    let common = &arguments.common;
+    let (embree, context) = open(common)?;
     let begin = Instant::now();
     let builder = GridBuilder::new(&context)?;
     let pipelines_ms = begin.elapsed().as_secs_f64() * 1e3;
@@ -84,22 +121,42 @@ fn run(arguments: &Arguments) -> Result<Report> {
         driver: format!("{} {}", info.driver_name, info.driver_info),
         device_is_cpu: context.is_cpu(),
         pipelines_ms,
-        embree: embree.as_ref().map(|embree| Rival {
-            version: embree.version(),
-            library: embree.path().display().to_string(),
-            threads: embree.threads(),
-            trace_quality: format!("{:?}", arguments.embree_quality).to_lowercase(),
-        }),
+        embree: embree.as_ref().map(|embree| rival(embree, &format!("{:?}", arguments.embree_quality).to_lowercase())),
         runs: arguments.runs,
         scenes: Vec::new(),
     };
-    let folders = scenes::folders(&arguments.folder);
+    let folders = scenes::folders(&common.folder);
     let default = ["bumpy:70000".to_owned()];
     let specs = if arguments.scenes.is_empty() { &default } else { arguments.scenes.as_slice() };
     for spec in specs {
         eprintln!("gridwalk-bench: {spec}");
-        let loaded = scenes::load(spec, &folders, arguments.seed)?;
+        let loaded = scenes::load(spec, &folders, common.seed)?;
         report.scenes.push(measure::measure(&builder, embree.as_ref(), arguments, &loaded).with_context(|| spec.clone())?);
+    }
+    Ok(report)
+}
+
+fn run_dynamic(arguments: &Dynamic) -> Result<dynamic_report::Report> {
+    let common = &arguments.common;
+    let (embree, context) = open(common)?;
+    let info = context.device_info();
+    let mut report = dynamic_report::Report {
+        schema: 1,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        device: info.name.clone(),
+        driver: format!("{} {}", info.driver_name, info.driver_info),
+        device_is_cpu: context.is_cpu(),
+        embree: embree.as_ref().map(|embree| rival(embree, "low")),
+        size: common.size.next_multiple_of(8),
+        runs: arguments.runs,
+        scenes: Vec::new(),
+    };
+    let folders = scenes::folders(&common.folder);
+    let default = ["bumpy:70000".to_owned()];
+    let specs = if arguments.scenes.is_empty() { &default } else { arguments.scenes.as_slice() };
+    for spec in specs {
+        let moving = moving::open(spec, &folders, common.seed).with_context(|| spec.clone())?;
+        report.scenes.push(dynamic::measure(&context, embree.as_ref(), arguments, spec, moving).with_context(|| spec.clone())?);
     }
     Ok(report)
 }

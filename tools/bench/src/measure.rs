@@ -4,14 +4,14 @@ use anyhow::{Context as _, Result};
 use gridwalk::{Capacity, Hit, Ray, UNFINISHED};
 use gridwalk_render::{BuildSettings, GpuScene, Grid, GridBuilder, RayBatch, StepTime};
 
-use crate::arguments::{Arguments, Overlap, Part};
+use crate::arguments::{Arguments, Common, Overlap, Part};
 use crate::embree::{self, Embree};
 use crate::rays::{camera_rays, diffuse_rays};
 use crate::report::{Comparison, Difference, Example, RayReport, Run, SceneReport, Step, Times, median};
 use crate::scenes::Loaded;
 
 /// How a build is to be made.
-pub fn settings(arguments: &Arguments) -> BuildSettings {
+pub fn settings(arguments: &Common) -> BuildSettings {
     let mut settings = BuildSettings::default();
     if let Some(density) = arguments.density {
         settings.density = density;
@@ -32,7 +32,7 @@ pub fn settings(arguments: &Arguments) -> BuildSettings {
 pub fn measure(builder: &GridBuilder, embree: Option<&Embree>, arguments: &Arguments, loaded: &Loaded) -> Result<SceneReport> {
     let mesh = loaded.scene.meshes.first().context("a scene without a mesh")?;
     let gpu = GpuScene::upload(builder.context(), &loaded.scene)?;
-    let mut grid = builder.build(&gpu, &settings(arguments))?;
+    let mut grid = builder.build(&gpu, &settings(&arguments.common))?;
     let rival = match embree {
         Some(embree) => {
             let mesh = embree::Mesh::new(&mesh.positions, &mesh.indices).context("an index that leads nowhere")?;
@@ -67,12 +67,12 @@ pub fn measure(builder: &GridBuilder, embree: Option<&Embree>, arguments: &Argum
         };
         let [camera, diffuse, any] = parts;
         if camera {
-            let set = camera_rays(&loaded.camera, arguments.size);
+            let set = camera_rays(&loaded.camera, arguments.common.size);
             rays.push(closest("camera", &grid, theirs.as_ref(), &set, arguments.runs)?);
         }
         if diffuse || any {
-            let size = arguments.size.next_multiple_of(8);
-            let set = diffuse_rays(mesh, size * size, arguments.seed);
+            let size = arguments.common.size.next_multiple_of(8);
+            let set = diffuse_rays(mesh, size * size, arguments.common.seed);
             if diffuse {
                 rays.push(closest("diffuse", &grid, theirs.as_ref(), &set, arguments.runs)?);
             }
@@ -108,7 +108,7 @@ pub fn measure(builder: &GridBuilder, embree: Option<&Embree>, arguments: &Argum
 }
 
 /// Median of each step over the runs, all of which have the same steps in the same order.
-fn median_steps(runs: &[Vec<StepTime>]) -> Vec<Step> {
+pub fn median_steps(runs: &[Vec<StepTime>]) -> Vec<Step> {
     let Some(first) = runs.first() else { return Vec::new() };
     let steps = first.iter().enumerate().map(|(index, step)| {
         let ms = median(runs.iter().filter_map(|run| run.get(index)).map(|step| step.ms));
@@ -205,7 +205,7 @@ fn ray_report(kind: &str, rays: usize, hits: u64, unfinished: u64, time: Compari
 const EXAMPLES: usize = 16;
 
 /// Counts how hits differ.
-fn difference(rays: &[Ray], ours: &[Hit], theirs: &[Hit]) -> Difference {
+pub fn difference(rays: &[Ray], ours: &[Hit], theirs: &[Hit]) -> Difference {
     let mut difference = Difference::default();
     for (index, (ours, theirs)) in ours.iter().zip(theirs).enumerate() {
         if ours.triangle == theirs.triangle {

@@ -6,6 +6,8 @@ use gridwalk::Ray;
 use gridwalk_scene::generate::Random;
 use gridwalk_scene::{Camera, Mesh};
 
+use crate::vector::{cross, dot, sub, unit};
+
 /// Side of the squares in which camera rays are ordered, so that neighbours in the picture are neighbours in memory.
 const TILE: u32 = 8;
 
@@ -67,24 +69,6 @@ pub fn diffuse_rays(mesh: &Mesh, count: u32, seed: u64) -> Vec<Ray> {
             Ray { origin: std::array::from_fn(|axis| point[axis] + offset * normal[axis]), t_min: 0.0, direction, t_max: f32::INFINITY }
         })
         .collect()
-}
-
-fn sub(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Of length one; up where there is no direction, so that every ray has one.
-fn unit(a: [f32; 3]) -> [f32; 3] {
-    let length = dot(a, a).sqrt();
-    if length > 0.0 && length.is_finite() { a.map(|value| value / length) } else { [0.0, 1.0, 0.0] }
 }
 
 #[cfg(test)]

@@ -223,7 +223,7 @@ impl Comparison {
 }
 
 /// Rows of cells as text, with columns as wide as they need be; the first column to the left, the others to the right.
-fn columns(rows: &[Vec<String>]) -> String {
+pub fn columns(rows: &[Vec<String>]) -> String {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let widths: Vec<usize> = (0..count)
         .map(|column| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0))
@@ -246,7 +246,7 @@ fn bytes_each(bytes: u64, triangles: u32) -> String {
 }
 
 /// Three decimals below 1, so that no ratio loses its second digit.
-fn number(value: Option<f64>) -> String {
+pub fn number(value: Option<f64>) -> String {
     match value {
         None => "-".to_owned(),
         Some(value) if value < 1.0 => format!("{value:.3}"),
@@ -352,7 +352,7 @@ impl Report {
     }
 }
 
-fn head(names: &[&str]) -> Vec<String> {
+pub fn head(names: &[&str]) -> Vec<String> {
     names.iter().map(|&name| name.to_owned()).collect()
 }
 

@@ -69,7 +69,7 @@ pub fn load(spec: &str, folders: &[PathBuf], seed: u64) -> Result<Loaded> {
     if let Some((eye, target, fov)) = known.and_then(|known| known.view) {
         camera = Camera { eye, target, vertical_fov_degrees: fov, ..camera };
     }
-    let scene = gridwalk_scene::scene_of_mesh(generate::merge(&scene.meshes));
+    let scene = gridwalk_scene::scene_of_mesh(merged(&scene));
     Ok(Loaded { name: spec.to_owned(), scene, camera })
 }
 
@@ -104,8 +104,16 @@ fn read(path: &Path) -> Result<Scene> {
     })
 }
 
+/// All meshes of a scene as one.
+pub fn merged(scene: &Scene) -> Mesh {
+    generate::merge(&scene.meshes)
+}
+
 /// `None` where `shape` is not the name of one.
-fn make(shape: &str, count: &str, seed: u64) -> Option<Result<Scene>> {
+///
+/// # Errors
+/// A number of triangles that is none.
+pub fn make(shape: &str, count: &str, seed: u64) -> Option<Result<Scene>> {
     let make: fn(u32, u64) -> Mesh = match shape {
         // A sphere of n segments has about n² triangles.
         "sphere" => |count, _| generate::sphere([0.0; 3], 1.0, root(count)),
