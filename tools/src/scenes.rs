@@ -32,7 +32,7 @@ struct Scene {
 
 const STANFORD: &str = "Stanford Computer Graphics Laboratory; credit it, not for commercial use";
 
-const SCENES: [Scene; 12] = [
+const SCENES: [Scene; 13] = [
     Scene {
         name: "bunny",
         folder: "bunny",
@@ -61,6 +61,7 @@ const SCENES: [Scene; 12] = [
     furniture_scene("warehouse", "about 9,890,000", "warehouse.toml"),
     megaglest_scene("elephant", "1,795, 10 key-frames", "elephant/elephant.0000.obj"),
     megaglest_scene("turtles", "6,444, 9 key-frames", "turtles/turtles.0000.obj"),
+    megaglest_scene("megaglest-forest", "32,003, of which 7,162 move", "forest/scene.toml"),
 ];
 
 const fn dragon_scene(name: &'static str, triangles: &'static str, fill: fn(&Path) -> Result<()>) -> Scene {
@@ -228,9 +229,18 @@ fn megaglest(folder: &Path) -> Result<()> {
             let models = factions.join(unit).join("models");
             g3d::convert(&walking(&models)?, &folder.join(name), name)?;
         }
+        let models = unpacked.join("usr/share/games/megaglest/data/core/menu/main_model");
+        let forest = folder.join("forest");
+        for model in FOREST {
+            g3d::convert(&models.join(format!("{model}.g3d")), &forest, model)?;
+        }
+        compose::megaglest_forest(&forest, FOREST)?;
         copy(&unpacked.join("usr/share/doc/megaglest-data/copyright"), &folder.join("copyright"))
     })
 }
+
+/// The landscape behind MegaGlest's menu, and the groups that move in it.
+const FOREST: [&str; 5] = ["menu_main", "intro1", "intro2", "intro3", "intro4"];
 
 /// The model of a unit in motion.
 fn walking(models: &Path) -> Result<PathBuf> {

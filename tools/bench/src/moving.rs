@@ -30,7 +30,7 @@ enum Make {
 const KNOWN: [Known; 7] = [
     Known { name: "gallop", file: "elephant-gallop/elephant.0000.obj", make: Make::Pattern("elephant.%04d.obj") },
     Known { name: "herd", file: "elephant-gallop/elephant.0000.obj", make: Make::Herd },
-    Known { name: "forest", file: "megaglest-forest/scene.toml", make: Make::Open },
+    Known { name: "forest", file: "megaglest/forest/scene.toml", make: Make::Open },
     Known { name: "fox", file: "gltf/bevy-animated/Fox.glb", make: Make::Open },
     Known { name: "man", file: "gltf/CesiumMan/CesiumMan.glb", make: Make::Open },
     Known { name: "morph", file: "gltf/bevy-animated/MorphStressTest.gltf", make: Make::Open },

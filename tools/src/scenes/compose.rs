@@ -35,6 +35,11 @@ impl SceneFile {
         let _ = writeln!(self.0, "\n[[mesh]]\nshape = \"quad\"\ncorners = {corners:?}\nmaterial = \"ground\"");
     }
 
+    /// Places the key-frames of a moving model of the scene's folder, ten a second, again and again.
+    fn play(&mut self, sequence: &str) {
+        let _ = writeln!(self.0, "\n[[mesh]]\nsequence = {sequence:?}\nfps = 10\nloop = true");
+    }
+
     /// Writes the file.
     pub fn write(&self, path: &Path) -> Result<()> {
         fs::write(path, &self.0).with_context(|| format!("{}: cannot be written", path.display()))
@@ -255,4 +260,19 @@ fn write_stands(folder: &Path) -> Result<()> {
         fs::write(&path, text).with_context(|| format!("{}: cannot be written", path.display()))?;
     }
     Ok(())
+}
+
+/// MegaGlest's forest: models whose key-frames `g3d::convert` has written into the folder, each where the game puts it.
+pub fn megaglest_forest(folder: &Path, models: [&str; 5]) -> Result<()> {
+    let mut scene =
+        SceneFile::new("The forest behind the menu of MegaGlest, and four groups that move in it; CC BY-SA 3.0, MegaGlest team");
+    for model in models {
+        let first = format!("{model}.0000.obj");
+        if folder.join(format!("{model}.0001.obj")).exists() {
+            scene.play(&format!("{model}.%04d.obj"));
+        } else {
+            scene.place(&first, &[[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
+        }
+    }
+    scene.write(&folder.join("scene.toml"))
 }
