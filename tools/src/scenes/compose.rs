@@ -266,6 +266,9 @@ fn write_stands(folder: &Path) -> Result<()> {
 pub fn megaglest_forest(folder: &Path, models: [&str; 5]) -> Result<()> {
     let mut scene =
         SceneFile::new("The forest behind the menu of MegaGlest, and four groups that move in it; CC BY-SA 3.0, MegaGlest team");
+    // From where the game's menu looks first. A dome of sky shuts out every light but one inside of it.
+    let _ = writeln!(scene.0, "\nambient = 0.5\n\n[[camera]]\nname = \"menu\"\neye = [5, 10, 40]\ntarget = [5, 9.5, 0]\nfov = 60");
+    let _ = writeln!(scene.0, "\n[[light]]\nkind = \"point\"\nposition = [10, 30, 25]\nintensity = 9000");
     for model in models {
         let first = format!("{model}.0000.obj");
         if folder.join(format!("{model}.0001.obj")).exists() {

@@ -47,8 +47,6 @@ struct Part {
     uvs: Option<Vec<f32>>,
     triangles: Vec<u32>,
     diffuse: Vec<f32>,
-    specular: Vec<f32>,
-    shininess: f32,
     opacity: f32,
     texture: Option<String>,
 }
@@ -64,8 +62,10 @@ fn parts(bytes: &[u8]) -> Result<Vec<Part>> {
     for _ in 0..count {
         reader.name()?;
         let [frames, vertices, indices] = [reader.u32()? as usize, reader.u32()? as usize, reader.u32()? as usize];
-        let (diffuse, specular) = (reader.f32s(3)?, reader.f32s(3)?);
-        let (shininess, opacity) = (f32::from_le_bytes(reader.array()?), f32::from_le_bytes(reader.array()?));
+        let diffuse = reader.f32s(3)?;
+        // Specular colour and power.
+        reader.bytes(16)?;
+        let opacity = f32::from_le_bytes(reader.array()?);
         reader.u32()?;
         let textures = reader.u32()?;
         let mut texture = None;
@@ -83,7 +83,7 @@ fn parts(bytes: &[u8]) -> Result<Vec<Part>> {
         if frames == 0 || !triangles.len().is_multiple_of(3) || triangles.iter().any(|&index| index as usize >= vertices) {
             bail!("a part whose triangles do not fit its vertices");
         }
-        parts.push(Part { frames, vertices, positions, normals, uvs, triangles, diffuse, specular, shininess, opacity, texture });
+        parts.push(Part { frames, vertices, positions, normals, uvs, triangles, diffuse, opacity, texture });
     }
     Ok(parts)
 }
@@ -96,8 +96,8 @@ pub fn convert(model: &Path, folder: &Path, name: &str) -> Result<()> {
     let write = |file: String, text: &str| fs::write(folder.join(&file), text).with_context(|| format!("{file}: cannot be written"));
     let mut mtl = String::new();
     for (index, part) in parts.iter().enumerate() {
-        let _ = writeln!(mtl, "newmtl m{index}\nKd {}\nKs {}", words(&part.diffuse), words(&part.specular));
-        let _ = writeln!(mtl, "Ns {}\nd {}", part.shininess, part.opacity);
+        // Nearly all files give leaves and earth a white gloss, of which the game shows nothing.
+        let _ = writeln!(mtl, "newmtl m{index}\nKd {}\nd {}", words(&part.diffuse), part.opacity);
         if let Some(texture) = &part.texture {
             let _ = writeln!(mtl, "map_Kd {}", copy_texture(model, texture, folder)?);
         }
