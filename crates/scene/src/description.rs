@@ -16,7 +16,7 @@ use crate::key_reader::{Cache, KeyReader, first_mesh};
 use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, folder_of};
 use crate::sequence::{Pattern, Range as NumberRange, Sequence};
 use crate::suggest::closest;
-use crate::texture::Use;
+use crate::texture::{Use, srgb_to_linear};
 use crate::transform::{Edit, Transform};
 use crate::vector::{cross, dot, normalised, sub};
 use crate::{
@@ -100,10 +100,6 @@ impl<'de> Deserialize<'de> for Colour {
             Err(D::Error::custom("the parts of a colour must be finite and 0 or more"))
         }
     }
-}
-
-fn srgb_to_linear(value: f32) -> f32 {
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
 #[derive(Deserialize)]
@@ -737,7 +733,7 @@ impl Builder<'_> {
     /// An error of a file that the scene file names; those that tell their own place are left as they are.
     fn in_place(&self, span: Range<usize>, error: Error) -> Error {
         match error {
-            error @ (Error::Obj { .. } | Error::Description { .. }) => error,
+            error @ (Error::Obj { .. } | Error::Ply { .. } | Error::Description { .. }) => error,
             error => self.source.error_in(span, error.to_string()),
         }
     }

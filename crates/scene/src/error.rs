@@ -50,7 +50,7 @@ pub enum Error {
         limit: u64,
     },
     /// A file name whose ending says no format that can be read.
-    #[error("{}: cannot tell the format by the ending; readable are .obj and .toml", path.display())]
+    #[error("{}: cannot tell the format by the ending; readable are .obj, .ply (also as .gz) and .toml", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -97,6 +97,16 @@ pub enum Error {
         /// What is wrong, and the cure.
         message: String,
     },
+    /// A place of a PLY file that cannot be read.
+    #[error("{file}:{place}: {message}")]
+    Ply {
+        /// The file, or `-`.
+        file: String,
+        /// Where in the file.
+        place: Place,
+        /// What is wrong, and the cure.
+        message: String,
+    },
     /// A place of a scene file that cannot be read.
     #[error("{file}:{line}: {message}")]
     Description {
@@ -115,4 +125,22 @@ pub enum Error {
         /// What is wrong.
         message: String,
     },
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line, counted from 1.
+    Line(u64),
+    /// A byte, counted from 0; of what it holds, where the file is packed.
+    Byte(u64),
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Line(line) => write!(formatter, "{line}"),
+            Self::Byte(byte) => write!(formatter, "byte {byte}"),
+        }
+    }
 }

@@ -78,6 +78,7 @@ mod obj;
 mod obj_scene;
 mod options;
 mod panorama;
+mod ply;
 mod sequence;
 mod suggest;
 mod texture;
@@ -87,7 +88,7 @@ mod types;
 mod vector;
 
 pub use animation::{Animation, AnimationOptions, Clip, DEFAULT_FPS, Deformed, Influence, KeyFrame, KeyPair, MorphTarget, Motion, Pose};
-pub use error::{Error, Result};
+pub use error::{Error, Place, Result};
 pub use frame::{Framing, frame_camera};
 pub use key_reader::KeyReader;
 pub use load::{load, load_reader, open, scene_of_mesh};

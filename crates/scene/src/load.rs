@@ -16,7 +16,7 @@ use crate::{
     Animation, AnimationOptions, Background, DEFAULT_FPS, Error, Light, LoadOptions, Material, Mesh, Motion, RenderDefaults, Result,
 };
 
-/// Reads a scene: an `.obj` file, or a scene file (`.toml`), or a folder that holds a `scene.toml`.
+/// Reads a scene: an `.obj` or `.ply` file, packed by gzip or not, or a scene file (`.toml`), or a folder that holds a `scene.toml`.
 ///
 /// A scene without lights gets a key and a fill light and a soft gradient as background; one without cameras is framed automatically
 /// ([`Scene::camera`]).
@@ -40,8 +40,8 @@ pub fn open(path: &Path, options: &LoadOptions, animation: &AnimationOptions) ->
     let inside = path.join("scene.toml");
     let path = if path.is_dir() { inside.as_path() } else { path };
     let opened = match (ending(path).as_deref(), pattern_of(path)?) {
-        (Some("obj"), Some((pattern, folder))) => open_sequence(pattern, &folder, options),
-        (Some("obj"), None) => {
+        (Some("obj" | "ply" | "obj.gz" | "ply.gz"), Some((pattern, folder))) => open_sequence(pattern, &folder, options),
+        (Some("obj" | "ply" | "obj.gz" | "ply.gz"), None) => {
             let bytes = read_file(path, options.max_mesh_bytes)?;
             load_mesh(&bytes, path, path.parent(), options).map(Animation::still)
         }
@@ -59,9 +59,13 @@ pub fn open(path: &Path, options: &LoadOptions, animation: &AnimationOptions) ->
     }
 }
 
-/// The ending of a file's name, in small letters.
-fn ending(path: &Path) -> Option<String> {
-    path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
+/// The ending of a file's name, in small letters; with the one before where it says that the file is packed.
+pub(crate) fn ending(path: &Path) -> Option<String> {
+    let last = |path: &Path| path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    match last(path) {
+        Some(packed) if packed == "gz" => Some(last(Path::new(path.file_stem()?)).map_or(packed, |inner| inner + ".gz")),
+        ending => ending,
+    }
 }
 
 fn open_sequence(pattern: Pattern, folder: &Path, options: &LoadOptions) -> Result<Animation> {
@@ -79,7 +83,7 @@ fn open_sequence(pattern: Pattern, folder: &Path, options: &LoadOptions) -> Resu
     Ok(animation)
 }
 
-/// Reads an OBJ stream, such as standard input. Materials are looked for below `folder`; without one none is opened.
+/// Reads an OBJ or PLY stream, packed by gzip or not, such as standard input. Materials are looked for below `folder`; without one none is opened.
 ///
 /// # Errors
 /// As [`load`]; the file in messages is `-`.
@@ -108,7 +112,10 @@ pub(crate) fn empty() -> Scene {
 
 /// The file's name without folder and ending.
 pub(crate) fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "mesh".to_owned(), |name| name.to_string_lossy().into_owned())
+    let stem = path.file_stem().map(Path::new);
+    let stem =
+        if ending(path).is_some_and(|ending| ending.ends_with(".gz")) { stem.and_then(Path::file_stem) } else { stem.map(Path::as_os_str) };
+    stem.map_or_else(|| "mesh".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
 pub(crate) fn folder_of(path: &Path) -> PathBuf {

@@ -31,7 +31,7 @@ fn decode_other(bytes: &[u8], options: &LoadOptions) -> Result<(u32, u32, Vec<[f
     let mut values = picture.into_rgb32f().into_raw();
     if !linear {
         for value in &mut values {
-            *value = if *value <= 0.04045 { *value / 12.92 } else { ((*value + 0.055) / 1.055).powf(2.4) };
+            *value = texture::srgb_to_linear(*value);
         }
     }
     Ok((width, height, values.as_chunks::<3>().0.to_vec()))

@@ -147,3 +147,8 @@ fn holds_normals(texture: &Texture) -> bool {
     }
     bluish * 4 > seen * 3
 }
+
+/// One part of a colour, from its sRGB code between 0 and 1.
+pub(crate) fn srgb_to_linear(value: f32) -> f32 {
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}

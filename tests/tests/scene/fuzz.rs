@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use gridwalk_scene::generate::Random;
 use gridwalk_scene::{LoadOptions, Scene, load, load_reader};
 
-use super::{folder, png, tga};
+use super::{folder, ply, png, tga};
 
 const OBJ: &[u8] = b"# head\nmtllib a.mtl\no body\nv 0 0 0\nv 1.5 0 -2e-3\nv 1 1 0\nv 0 1 0 1\nv .5 .5 1\nvt 0 0\nvt 1 0\nvt 1 1 0\nvn 0 0 1\n\
     vn 0 1 0\ng one two\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/3/2\nf 1 2 3 4\ns off\nusemtl blue\nf -1//-1 -2//-1 -3//-2\nf 1/1 3/2 \\\n4/3\nf 2 3 5 4 1\n";
@@ -82,6 +82,8 @@ fn assert_sound(scene: &Scene) {
         assert!(mesh.materials.iter().all(|&at| (at as usize) < scene.materials.len()));
         assert!(mesh.normals.iter().all(|normal| (normal.iter().map(|value| value * value).sum::<f32>() - 1.0).abs() < 1e-4));
         assert!(mesh.uvs.as_flattened().iter().all(|value| value.is_finite()));
+        assert!(mesh.colours.is_empty() || mesh.colours.len() == mesh.positions.len());
+        assert!(mesh.colours.as_flattened().iter().all(|value| value.is_finite() && *value >= 0.0));
     }
     for material in &scene.materials {
         let maps = [material.diffuse_map, material.specular_map, material.emission_map, material.opacity_map, material.normal_map];
@@ -125,6 +127,32 @@ fn meshes() {
         load_reader(&mut bytes.as_slice(), None, &LoadOptions::default()).ok()
     });
     assert_mixed("meshes", scenes, count);
+}
+
+#[test]
+fn ply_meshes() {
+    let count = 6000;
+    let scenes = fuzz("ply_meshes", count, |random| {
+        let model = ply::model(random);
+        let format = [ply::Format::Ascii, ply::Format::Little, ply::Format::Big][random.below(3) as usize];
+        let bytes = mutated(&ply::write(&model, format, false, random), 4, random);
+        load_reader(&mut bytes.as_slice(), None, &LoadOptions::default()).ok()
+    });
+    assert_mixed("ply_meshes", scenes, count);
+}
+
+#[test]
+fn packed_meshes() {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::none());
+    std::io::Write::write_all(&mut encoder, OBJ).unwrap();
+    let packed = encoder.finish().unwrap();
+    let options = LoadOptions { max_mesh_bytes: 1 << 20, ..LoadOptions::default() };
+    let count = 3000;
+    let scenes = fuzz("packed_meshes", count, |random| {
+        let bytes = mutated(&packed, 1, random);
+        load_reader(&mut bytes.as_slice(), None, &options).ok()
+    });
+    assert_mixed("packed_meshes", scenes, count);
 }
 
 fn small() -> LoadOptions {

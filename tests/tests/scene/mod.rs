@@ -5,6 +5,7 @@ mod committed;
 mod fuzz;
 mod nasty;
 mod oracle;
+mod ply;
 mod reading;
 mod sandbox;
 
