@@ -121,6 +121,16 @@ pub struct Built {
 }
 
 impl Built {
+    /// The mesh on the device.
+    pub fn geometry(&self) -> Geometry {
+        Geometry {
+            positions: self.positions.region(),
+            vertex_count: (self.positions.size / 12) as u32,
+            indices: self.indices.region(),
+            triangle_count: (self.indices.size / 12) as u32,
+        }
+    }
+
     pub fn header(&self) -> GridHeader {
         self.grid.read(0, 1)[0]
     }
@@ -400,7 +410,7 @@ impl Gpu {
             triangle_count: mesh.indices.len() as u32,
         };
         let info = BuildInfo {
-            geometry,
+            input: geometry.into(),
             grid: grid.region(),
             scratch: scratch.region(),
             report: report_memory.region(),
@@ -450,7 +460,7 @@ impl Gpu {
 
     /// The closest hits by testing all triangles.
     pub fn brute_force(&self, built: &Built, rays: &[Ray]) -> Vec<Hit> {
-        let triangle_count = built.info.geometry.triangle_count;
+        let triangle_count = built.report.triangles;
         self.trace(built, rays, |cmd, grid, info| {
             // SAFETY: see `trace`.
             unsafe { self.tracer.cmd_brute_force(cmd, grid, triangle_count, info) }
@@ -477,16 +487,14 @@ impl Gpu {
         let counters = self.guarded("counters", rays.len().max(1) as u64 * 16);
         let number = self.upload("ray count", &[options.indirect.unwrap_or(0)]);
         let scratch = self.guarded("trace scratch", self.tracer.trace_scratch_size(max).unwrap().size);
+        let count = match options.indirect {
+            Some(_) => RayCount::Indirect { count: number.region(), max },
+            None => RayCount::Direct(max),
+        };
         let info = TraceInfo {
-            rays: ray_memory.region(),
-            hits: hits.region(),
-            count: match options.indirect {
-                Some(_) => RayCount::Indirect { count: number.region(), max },
-                None => RayCount::Direct(max),
-            },
-            scratch: scratch.region(),
             resume: options.resume.is_some(),
             counters: options.count.then(|| counters.region()),
+            ..TraceInfo::new(ray_memory.region(), hits.region(), count, scratch.region())
         };
         self.submit(|cmd| {
             // SAFETY: all memory lives until the submission has ended, which `submit` waits for.
@@ -520,14 +528,7 @@ impl Gpu {
         let ray_memory = self.upload("rays", rays);
         let hits = self.guarded("hits", (rays.len() * size_of::<T>()).max(4) as u64);
         let scratch = self.guarded("trace scratch", self.tracer.trace_scratch_size(count).unwrap().size);
-        let info = TraceInfo {
-            rays: ray_memory.region(),
-            hits: hits.region(),
-            count: RayCount::Direct(count),
-            scratch: scratch.region(),
-            resume: false,
-            counters: None,
-        };
+        let info = TraceInfo::new(ray_memory.region(), hits.region(), RayCount::Direct(count), scratch.region());
         self.submit(|cmd| record(cmd, built.grid.region().address, &info).unwrap());
         for memory in [&ray_memory, &hits, &scratch, &built.grid] {
             memory.check();

@@ -77,9 +77,7 @@
 //!         cmd_barrier(device, cmd, Access::COMPUTE, Tracer::BUILD);
 //!         tracer.cmd_build(cmd, build)?;
 //!         cmd_barrier(device, cmd, Tracer::BUILD, Tracer::TRACE);
-//!         let trace = TraceInfo {
-//!             rays, hits, count: RayCount::Direct(1_000_000), scratch: trace_scratch, resume: false, counters: None,
-//!         };
+//!         let trace = TraceInfo::new(rays, hits, RayCount::Direct(1_000_000), trace_scratch);
 //!         tracer.cmd_closest_hit(cmd, build.grid.address, &trace)
 //!     }
 //! }
@@ -108,7 +106,7 @@ pub use sizes::{
     BuildSizes, Capacity, MAX_CELLS, MAX_PAIRS, MAX_RAYS, MAX_TRIANGLES, MAX_VERTICES, REGION_ALIGNMENT, RegionSize, region_bytes,
 };
 pub use sync::{Access, cmd_barrier};
-pub use tracer::{BuildInfo, BuildOptions, DeviceDesc, Geometry, Overlap, RayCount, Region, Timestamps, TraceInfo, Tracer};
+pub use tracer::{BuildInfo, BuildOptions, DeviceDesc, Geometry, Input, Overlap, RayCount, Region, Timestamps, TraceInfo, Tracer};
 
 /// The public GLSL include in one piece: trace from your own shader.
 pub const GRIDWALK_GLSL: &str = include_str!("../glsl/gridwalk.glsl");

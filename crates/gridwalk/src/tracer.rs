@@ -67,6 +67,20 @@ pub struct Geometry {
     pub triangle_count: u32,
 }
 
+/// What a grid is built of.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Input {
+    /// One mesh, tightly packed.
+    Mesh(Geometry),
+}
+
+impl From<Geometry> for Input {
+    fn from(geometry: Geometry) -> Input {
+        Input::Mesh(geometry)
+    }
+}
+
 /// Which cells list a triangle (thesis Figure 3.2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overlap {
@@ -112,7 +126,7 @@ pub struct Timestamps {
 #[derive(Clone, Copy, Debug)]
 pub struct BuildInfo {
     /// What is built.
-    pub geometry: Geometry,
+    pub input: Input,
     /// Where the grid goes.
     pub grid: Region,
     /// Memory of the build.
@@ -167,6 +181,14 @@ pub struct TraceInfo {
     pub resume: bool,
     /// Closest hit only: where each ray's numbers of steps, triangle tests and cells that were not empty are written, as `uvec4`.
     pub counters: Option<Region>,
+}
+
+impl TraceInfo {
+    /// A trace without options. What is set beside is best put around it, since fields may be added:
+    /// `TraceInfo { resume: true, ..TraceInfo::new(rays, hits, count, scratch) }`.
+    pub const fn new(rays: Region, hits: Region, count: RayCount, scratch: Region) -> TraceInfo {
+        TraceInfo { rays, hits, count, scratch, resume: false, counters: None }
+    }
 }
 
 struct Variant {
@@ -362,7 +384,7 @@ impl Tracer {
     /// device, do not overlap, and live until the command buffer has been executed; scratch's buffer has usage `INDIRECT_BUFFER`. With
     /// timestamps: the queue has them, and the pool holds enough queries from the first on.
     pub unsafe fn cmd_build(&self, cmd: vk::CommandBuffer, info: &BuildInfo) -> Result<()> {
-        let BuildInfo { geometry, capacity, options, .. } = info;
+        let BuildInfo { input: Input::Mesh(geometry), capacity, options, .. } = info;
         sizes::check_capacity(capacity)?;
         if geometry.triangle_count > capacity.triangles {
             return Err(Error::Capacity { what: "triangles", given: geometry.triangle_count.into(), limit: capacity.triangles.into() });
@@ -408,9 +430,10 @@ impl Tracer {
         let scratch = ScratchLayout::new(&info.capacity, &self.shape);
         let in_grid = |part: sizes::Part| info.grid.part(part.offset, part.size);
         let in_scratch = |part: sizes::Part| info.scratch.part(part.offset, part.size);
+        let Input::Mesh(geometry) = info.input;
         match buffer {
-            Buffer::Positions => info.geometry.positions,
-            Buffer::Indices => info.geometry.indices,
+            Buffer::Positions => geometry.positions,
+            Buffer::Indices => geometry.indices,
             Buffer::Report => info.report,
             Buffer::Header => in_grid(grid.header),
             Buffer::Cells => in_grid(grid.cells),

@@ -120,14 +120,9 @@ impl RayBatch {
         };
         while first < self.count {
             let count = (self.count - first).min(most);
-            let info = TraceInfo {
-                rays: self.rays.region().part(u64::from(first) * size_of::<Ray>() as u64, u64::from(count) * size_of::<Ray>() as u64),
-                hits: self.answers.region().part(u64::from(first) * answer_size, u64::from(count) * answer_size),
-                count: RayCount::Direct(count),
-                scratch: scratch.region(),
-                resume: false,
-                counters: None,
-            };
+            let rays = self.rays.region().part(u64::from(first) * size_of::<Ray>() as u64, u64::from(count) * size_of::<Ray>() as u64);
+            let hits = self.answers.region().part(u64::from(first) * answer_size, u64::from(count) * answer_size);
+            let info = TraceInfo::new(rays, hits, RayCount::Direct(count), scratch.region());
             self.context.submit("trace", |cmd| {
                 let mut recorder = Recorder::new(&self.context, cmd, &mut timer);
                 // SAFETY: the command buffer is recording on the tracer's device; the regions are parts of living buffers of that device

@@ -284,7 +284,7 @@ impl Grid {
         let Some(scratch) = &self.scratch else { return Ok(()) };
         let BuildSettings { density, resolution, overlap } = self.settings;
         let info = BuildInfo {
-            geometry: *geometry,
+            input: (*geometry).into(),
             grid: self.grid.region(),
             scratch: scratch.region(),
             report: self.report.region(),

@@ -464,14 +464,8 @@ impl<'a> Batch<'a> {
     }
 
     fn trace_info(&self, rays: &Buffer, hits: &Buffer, header: u64) -> TraceInfo {
-        TraceInfo {
-            rays: rays.region(),
-            hits: hits.region(),
-            count: RayCount::Indirect { count: self.headers.region().part(header, 4), max: self.capacity },
-            scratch: self.scratch.region(),
-            resume: false,
-            counters: None,
-        }
+        let count = RayCount::Indirect { count: self.headers.region().part(header, 4), max: self.capacity };
+        TraceInfo::new(rays.region(), hits.region(), count, self.scratch.region())
     }
 
     fn closest_hit(&self, recorder: &mut Recorder<'_>, bounce: u32, counters: Option<&Buffer>) -> Result<()> {

@@ -88,7 +88,7 @@ fn builds_share_scratch() {
         assert!(contents(gpu, grid) == contents(gpu, &alone), "another grid than one that is built alone");
     }
     let [mut first, second, _] = grids;
-    first.info.geometry = second.info.geometry;
+    first.info.input = second.info.input;
     gpu.rebuild(&mut first);
     assert_eq!(first.report, second.report);
     assert!(contents(gpu, &first) == contents(gpu, &second), "another grid than in fresh memory");

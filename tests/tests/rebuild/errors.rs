@@ -1,6 +1,6 @@
 //! What cannot be built is refused when it is recorded, by name, and nothing is written.
 
-use gridwalk::{BuildInfo, BuildOptions, Capacity, Error, MAX_CELLS, MAX_PAIRS, MAX_TRIANGLES, Region};
+use gridwalk::{BuildInfo, BuildOptions, Capacity, Error, Geometry, MAX_CELLS, MAX_PAIRS, MAX_TRIANGLES, Region};
 use gridwalk_tests::gpu::{CANARY, Gpu};
 use gridwalk_tests::meshes::soup;
 
@@ -51,6 +51,7 @@ fn builds_that_are_refused() {
     let moved = |region: Region| Region { address: region.address + 4, ..region };
     let options = |density| BuildOptions { density, ..BuildOptions::default() };
     let info = built.info;
+    let geometry = built.geometry();
     let cases: Vec<(&str, BuildInfo)> = vec![
         ("density", BuildInfo { options: options(0.0), ..info }),
         ("density", BuildInfo { options: options(-1.0), ..info }),
@@ -63,10 +64,10 @@ fn builds_that_are_refused() {
         ("report", BuildInfo { report: shrunk(info.report), ..info }),
         ("grid", BuildInfo { grid: moved(info.grid), ..info }),
         ("scratch", BuildInfo { scratch: Region::NONE, ..info }),
-        ("positions", BuildInfo { geometry: gridwalk::Geometry { vertex_count: 301, ..info.geometry }, ..info }),
-        ("vertices", BuildInfo { geometry: gridwalk::Geometry { vertex_count: gridwalk::MAX_VERTICES + 1, ..info.geometry }, ..info }),
+        ("positions", BuildInfo { input: Geometry { vertex_count: 301, ..geometry }.into(), ..info }),
+        ("vertices", BuildInfo { input: Geometry { vertex_count: gridwalk::MAX_VERTICES + 1, ..geometry }.into(), ..info }),
         ("scratch", BuildInfo { scratch: Region { buffer: Default::default(), ..info.scratch }, ..info }),
-        ("indices", BuildInfo { geometry: gridwalk::Geometry { indices: shrunk(info.geometry.indices), ..info.geometry }, ..info }),
+        ("indices", BuildInfo { input: Geometry { indices: shrunk(geometry.indices), ..geometry }.into(), ..info }),
     ];
     for (name, info) in cases {
         let message = gpu.refused(&info).to_string();
@@ -83,14 +84,8 @@ fn traces_that_are_refused() {
     let gpu = Gpu::shared();
     let region = gpu.guarded("memory", 4096);
     let address = region.region().address;
-    let info = gridwalk::TraceInfo {
-        rays: region.region().part(0, 32),
-        hits: region.region().part(64, 16),
-        count: gridwalk::RayCount::Direct(1),
-        scratch: region.region().part(1024, 1024),
-        resume: false,
-        counters: None,
-    };
+    let part = |offset, size| region.region().part(offset, size);
+    let info = gridwalk::TraceInfo::new(part(0, 32), part(64, 16), gridwalk::RayCount::Direct(1), part(1024, 1024));
     let cases = [
         ("grid", 0, info),
         ("grid", address + 32, info),
