@@ -79,6 +79,11 @@ impl Failure {
         Failure::new(Exit::Usage, message)
     }
 
+    /// The same failure, told as one of something larger.
+    pub fn within(self, of: String) -> Failure {
+        Failure { exit: self.exit, error: self.error.context(of) }
+    }
+
     /// A file cannot be used.
     pub fn input(message: impl Into<String>) -> Failure {
         Failure::new(Exit::Input, message)

@@ -1,4 +1,5 @@
-//! Ctrl-C: the program ends at once with status 130; while a file is put in its place, right after that, or at a second Ctrl-C.
+//! Ctrl-C: the program ends at once with status 130; while a file is put in its place, right after that; while frames are rendered, after
+//! the one at hand. A second Ctrl-C never waits.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -35,12 +36,20 @@ impl Interrupt {
 
     /// Runs `write` to its end whatever signal comes, then obeys the signal.
     pub fn uninterrupted<T>(&self, write: impl FnOnce() -> Result<T>) -> Result<T> {
+        let result = self.deferred(write);
+        if self.is_pending() { Err(Failure::new(Exit::Interrupted, "interrupted")) } else { result }
+    }
+
+    /// Runs `work`, which looks itself whether a signal [is pending](Interrupt::is_pending). A second signal ends the program.
+    pub fn deferred<T>(&self, work: impl FnOnce() -> T) -> T {
         self.at_once.store(false, Ordering::SeqCst);
-        let result = write();
+        let result = work();
         self.at_once.store(true, Ordering::SeqCst);
-        match self.pending.load(Ordering::SeqCst) {
-            0 => result,
-            _ => Err(Failure::new(Exit::Interrupted, "interrupted")),
-        }
+        result
+    }
+
+    /// Whether a signal has come that could not end the program.
+    pub fn is_pending(&self) -> bool {
+        self.pending.load(Ordering::SeqCst) != 0
     }
 }

@@ -8,6 +8,7 @@ mod interrupt;
 mod messages;
 mod npy;
 mod output;
+mod picture;
 mod progress;
 mod report;
 mod scene;
@@ -55,6 +56,7 @@ fn run(cli: Cli) -> Result<Exit> {
     let quiet = cli.global.quiet;
     match cli.command {
         Command::Render(low) => commands::render::run(*low, quiet, &interrupt),
+        Command::Animate(low) => commands::animate::run(*low, quiet, &interrupt),
         Command::Info(low) => commands::info::run(&low),
         Command::Devices(low) => commands::devices::run(low.json),
         Command::Cast(low) => commands::cast::run(*low, quiet, &interrupt),

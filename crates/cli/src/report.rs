@@ -70,6 +70,8 @@ pub struct Run {
     pub size: Option<[u32; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spp: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
     pub outputs: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heatmap: Option<Heatmap>,

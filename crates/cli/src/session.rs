@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use gridwalk_render::gridwalk::Overlap;
-use gridwalk_render::gridwalk_scene::{RenderDefaults, Scene};
-use gridwalk_render::{BuildSettings, Context, ContextDesc, GpuScene, Grid, GridBuilder, StepTime};
+use gridwalk_render::gridwalk_scene::{Animation, RenderDefaults};
+use gridwalk_render::{BuildSettings, Context, ContextDesc, Player, PlayerOptions, SeekStats, StepTime};
 
 use crate::args::{high, low};
 use crate::exit::{Exit, Result};
@@ -14,9 +14,9 @@ use crate::report::{self, Buffer, Header, Run, Step};
 /// A scene on a device, under a grid.
 pub struct Session {
     pub context: Context,
-    pub scene: GpuScene,
-    pub grid: Grid,
+    pub player: Player,
     device: high::Device,
+    settings: BuildSettings,
     /// Device milliseconds of the build, and of its steps: medians.
     build_ms: Option<f64>,
     build_steps: Vec<Step>,
@@ -24,8 +24,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens the device, brings the scene to it and builds the grid; `repeat` times more to measure it.
-    pub fn open(device: &high::Device, grid: &high::Grid, scene: &Scene, repeat: Option<u32>, started: Instant) -> Result<Session> {
+    /// Opens the device, brings the scene to it as it is at time 0 and builds the grid.
+    pub fn open(device: &high::Device, grid: &high::Grid, animation: Animation, started: Instant) -> Result<Session> {
         let context = Context::new(&ContextDesc {
             device: device.selector.clone(),
             validation: device.validate,
@@ -36,20 +36,44 @@ impl Session {
         report::warn_of_cpu(info);
         tracing::info!("device {} ({}), driver {}", info.name, info.kind.name(), report::driver(info));
 
-        let gpu_scene = GpuScene::upload(&context, scene)?;
-        tracing::debug!("{} triangles on the device", gpu_scene.triangle_count());
-        let settings = build_settings(grid, &scene.defaults);
-        let mut grid = GridBuilder::new(&context)?.build(&gpu_scene, &settings)?;
+        let settings = build_settings(grid, &animation.scene.defaults);
+        let mut options = PlayerOptions::default();
+        options.build = settings;
+        let player = Player::new(&context, animation, &options)?;
+        tracing::debug!("{} triangles on the device", player.scene().triangle_count());
+        Ok(Session { context, player, device: device.clone(), settings, build_ms: None, build_steps: Vec::new(), started })
+    }
+
+    /// Brings scene and grid to a time; `upcoming` are those that come next.
+    pub fn seek(&mut self, time: f64, upcoming: &[f64]) -> Result<SeekStats> {
+        let stats = self.player.seek(time, upcoming)?;
+        for warning in &stats.warnings {
+            tracing::warn!("{warning}");
+        }
+        Ok(stats)
+    }
+
+    /// Notes how long the build took, of `repeat` more where there are to be any.
+    pub fn measure_build(&mut self, repeat: Option<u32>) -> Result<()> {
+        let last = |player: &Player| (player.grid().stats().ms, player.grid().stats().steps.clone());
         // The first build warms the device up; with repetitions it does not count.
-        let mut builds = vec![(grid.stats().ms, grid.stats().steps.clone())];
+        let mut builds = vec![last(&self.player)];
         if let Some(repeat) = repeat {
             builds.clear();
             for _ in 0..repeat {
-                grid.rebuild(&gpu_scene)?;
-                builds.push((grid.stats().ms, grid.stats().steps.clone()));
+                self.player.rebuild()?;
+                builds.push(last(&self.player));
             }
         }
-        let report = grid.stats().report;
+        if self.context.has_timestamps() {
+            (self.build_ms, self.build_steps) = medians(builds);
+        }
+        Ok(())
+    }
+
+    /// Tells how the grid is, and in what it is not as it was wanted.
+    pub fn tell_grid(&self) {
+        let (report, settings) = (self.player.grid().stats().report, &self.settings);
         tracing::info!("grid of {} cells, {} pairs", report.resolution.map(|n| n.to_string()).join(" x "), report.pairs);
         if report.dropped > 0 {
             tracing::warn!("{} of {} triangles have a vertex that is not finite and are left out", report.dropped, report.triangles);
@@ -60,15 +84,14 @@ impl Session {
         if let Some(wanted) = settings.resolution.filter(|wanted| *wanted != report.resolution) {
             tracing::warn!("the resolution is {:?} instead of {wanted:?}: cells would be smaller than rounding allows", report.resolution);
         }
-        let (build_ms, build_steps) = if context.has_timestamps() { medians(builds) } else { (None, Vec::new()) };
-        Ok(Session { context, scene: gpu_scene, grid, device: device.clone(), build_ms, build_steps, started })
     }
 
     /// What is known of the run so far.
     pub fn report(&self, command: &str, source: &high::Source, repeat: Option<u32>) -> Run {
         let info = self.context.device_info();
-        let stats = self.grid.stats();
-        let parts = self.grid.tracer().map(|tracer| tracer.memory_parts(self.grid.capacity()).to_vec()).unwrap_or_default();
+        let grid = self.player.grid();
+        let stats = grid.stats();
+        let parts = grid.tracer().map(|tracer| tracer.memory_parts(grid.capacity()).to_vec()).unwrap_or_default();
         Run {
             header: Header::new(command),
             scene: source.name(),
@@ -96,6 +119,7 @@ impl Session {
             repeat: repeat.unwrap_or(1),
             size: None,
             spp: None,
+            time: None,
             outputs: Vec::new(),
             heatmap: None,
             wall_s: 0.0,
@@ -104,9 +128,22 @@ impl Session {
 
     /// Tells what there is to tell, and how the program is to end.
     pub fn finish(self, mut run: Run, reports: &high::Reports) -> Result<Exit> {
+        let exit = self.verdict(run.unfinished);
+        run.wall_s = self.seconds();
+        if reports.stats {
+            eprint!("{}", run.table());
+        }
+        if reports.json {
+            output::print_json(&run)?;
+        }
+        Ok(exit)
+    }
+
+    /// How the program is to end when all is written, with a word on why.
+    pub fn verdict(&self, unfinished: u64) -> Exit {
         let mut exit = Exit::Ok;
-        if run.unfinished > 0 {
-            tracing::warn!("{} rays were given up: too many triangles lie along them; try another --density", run.unfinished);
+        if unfinished > 0 {
+            tracing::warn!("{unfinished} rays were given up: too many triangles lie along them; try another --density");
             exit = Exit::Difference;
         }
         if self.device.validate {
@@ -118,14 +155,12 @@ impl Session {
                 exit = Exit::Difference;
             }
         }
-        run.wall_s = self.started.elapsed().as_secs_f64();
-        if reports.stats {
-            eprint!("{}", run.table());
-        }
-        if reports.json {
-            output::print_json(&run)?;
-        }
-        Ok(exit)
+        exit
+    }
+
+    /// Seconds since the program began.
+    pub fn seconds(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
     }
 }
 

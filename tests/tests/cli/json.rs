@@ -82,7 +82,7 @@ fn cast() {
     let folder = folder();
     std::fs::write(folder.path().join("r.npy"), super::cast::npy(&[[0.1, 0.1, 1.0, 0.0, 0.0, -1.0]])).unwrap();
     let json = gridwalk(folder.path(), words("cast two.obj --rays r.npy -o h.npz --json")).expect(0).json();
-    check("`gridwalk render`", &json, &["heatmap", "size", "spp"]);
+    check("`gridwalk render`", &json, &["heatmap", "size", "spp", "time"]);
     assert_eq!((json["schema"].as_str(), json["rays"].as_u64()), (Some("gridwalk.cast/1"), Some(1)));
 }
 

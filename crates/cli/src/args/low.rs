@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
+use gridwalk_render::image::Rate;
+
+use super::pattern::FrameRange;
 use super::values::{Extent, Resolution, Vector, finite, positive, size, up, vector};
 use crate::exit;
 
@@ -36,6 +39,9 @@ pub enum Command {
     /// Render a picture of a scene
     #[command(after_help = RENDER_EXAMPLES)]
     Render(Box<Render>),
+    /// Render the frames of a scene that moves, or of a turn around one that does not
+    #[command(after_help = ANIMATE_EXAMPLES)]
+    Animate(Box<Animate>),
     /// Tell what a scene holds, and the grid it would get
     Info(Box<Info>),
     /// List all Vulkan devices, and why one cannot serve
@@ -60,6 +66,18 @@ Examples:
   gridwalk render teapot.obj -o - | feh -
   gridwalk render scene.toml --camera inside --spp 16 --tonemap agx -o a.png -o a.exr --aov N,Z,id
   gridwalk render bunny.obj --azimuth 90 --zoom 2 --heatmap steps --stats";
+
+const ANIMATE_EXAMPLES: &str = "\
+Ctrl-C ends after the frame at hand; movies are finished with the frames so
+far. A second one ends at once.
+
+Examples:
+  gridwalk animate scene.toml
+  gridwalk animate elephant.%04d.obj --fps 25 -o elephant.mp4
+  gridwalk animate fox.glb --clip Run --size 640x480 -o run.gif -o run.%04d.png
+  gridwalk animate teapot.obj --turntable 6 -o teapot.apng
+  gridwalk animate scene.toml --frames 100..199 --skip-existing -o f.####.exr
+  gridwalk animate scene.toml -o - | mpv -";
 
 const CAST_EXAMPLES: &str = "\
 RAYS.npy holds float32 of shape (N, 6): origin x y z, direction x y z; or
@@ -133,7 +151,7 @@ pub struct Reports {
     /// Print a table of times and sizes on standard error
     #[arg(long, help_heading = "Reports")]
     pub stats: bool,
-    /// Print one JSON object on standard output (docs/json.md)
+    /// Print one JSON object on standard output; of `animate`, one a frame and one in the end (docs/json.md)
     #[arg(long, help_heading = "Reports")]
     pub json: bool,
     /// Show no progress bar
@@ -141,18 +159,9 @@ pub struct Reports {
     pub no_progress: bool,
 }
 
-#[derive(Args, Debug)]
-pub struct Render {
-    /// An .obj file, a scene.toml, a folder that holds one, or - for OBJ from standard input
-    #[arg(value_hint = ValueHint::AnyPath, required_unless_present_any = ["list_aovs", "list_tonemaps", "list_formats"])]
-    pub scene: Option<PathBuf>,
-
-    /// Where to: .png or .exr, several times if wanted; - is PNG on standard output [default: the scene's name, .png]
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Output")]
-    pub output: Vec<PathBuf>,
-    /// Whether a file that exists is replaced
-    #[arg(long, value_name = "WHEN", default_value = "always", help_heading = "Output")]
-    pub overwrite: Overwrite,
+/// How a picture looks, wherever it is taken from.
+#[derive(Args, Clone, Debug)]
+pub struct Picture {
     /// Pixels [default: the scene's, or 1024x768]
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Output")]
     pub size: Option<Extent>,
@@ -181,7 +190,48 @@ pub struct Render {
     /// Reflections that are followed [default: the scene's, or 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=64), help_heading = "Quality")]
     pub depth: Option<u32>,
+}
 
+/// The course of time.
+#[derive(Args, Clone, Debug)]
+pub struct Clock {
+    /// The clip to play, of a file that has several: see `list clips` [default: the first]
+    #[arg(long, value_name = "NAME", help_heading = "Time")]
+    pub clip: Option<String>,
+    /// Frames a second: 25, 23.976 or 24000/1001 [default: the scene's, or 24]
+    #[arg(long, value_name = "RATE", help_heading = "Time")]
+    pub fps: Option<Rate>,
+}
+
+/// A point in time.
+#[derive(Args, Clone, Debug)]
+pub struct Moment {
+    /// The moment, of a scene that moves, in seconds [default: 0]
+    #[arg(long, value_name = "SECONDS", value_parser = super::values::seconds, conflicts_with = "frame", help_heading = "Time")]
+    pub time: Option<f64>,
+    /// The moment as the number of a frame: the picture that `animate` gives for it
+    #[arg(long, value_name = "N", help_heading = "Time")]
+    pub frame: Option<u64>,
+    #[command(flatten)]
+    pub clock: Clock,
+}
+
+#[derive(Args, Debug)]
+pub struct Render {
+    /// An .obj file, a scene.toml, a folder that holds one, or - for OBJ from standard input
+    #[arg(value_hint = ValueHint::AnyPath, required_unless_present_any = ["list_aovs", "list_tonemaps", "list_formats"])]
+    pub scene: Option<PathBuf>,
+
+    /// Where to: .png or .exr, several times if wanted; - is PNG on standard output [default: the scene's name, .png]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Output")]
+    pub output: Vec<PathBuf>,
+    /// Whether a file that exists is replaced
+    #[arg(long, value_name = "WHEN", default_value = "always", help_heading = "Output")]
+    pub overwrite: Overwrite,
+    #[command(flatten)]
+    pub picture: Picture,
+    #[command(flatten)]
+    pub moment: Moment,
     #[command(flatten)]
     pub view: View,
     #[command(flatten)]
@@ -209,6 +259,89 @@ pub struct Render {
     /// List the file formats, and end
     #[arg(long, help_heading = "Lists")]
     pub list_formats: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct Animate {
+    /// As for `render`, or a sequence of files: mesh.%04d.obj, mesh.####.obj
+    #[arg(value_hint = ValueHint::AnyPath)]
+    pub scene: PathBuf,
+
+    /// Where to: a sequence (frame.%04d.png, frame.####.exr, {frame:04}.png) or a movie (.apng, .gif, .y4m; .mp4, .mkv, .webm by
+    /// ffmpeg), several times if wanted; - is Y4M on standard output [default: the scene's name, .apng]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Output")]
+    pub output: Vec<PathBuf>,
+    /// The format of all outputs, instead of what the endings say
+    #[arg(long, value_name = "FORMAT", help_heading = "Output")]
+    pub format: Option<AnimationFormat>,
+    /// Whether a file that exists is replaced
+    #[arg(long, value_name = "WHEN", default_value = "always", help_heading = "Output")]
+    pub overwrite: Overwrite,
+    /// Leave files that exist, and render only the frames that are missing
+    #[arg(long, help_heading = "Output")]
+    pub skip_existing: bool,
+    /// Colour samples of Y4M and video
+    #[arg(long, value_name = "SAMPLES", default_value = "420", help_heading = "Output")]
+    pub chroma: Chroma,
+    #[command(flatten)]
+    pub picture: Picture,
+
+    /// The frames, both ends included: 0..99, 10.., 0..99:2, 7; a movie of every second frame keeps its speed [default: all]
+    #[arg(long, value_name = "A..B[:STEP]", help_heading = "Time")]
+    pub frames: Option<FrameRange>,
+    /// How long the animation is, whatever the scene says
+    #[arg(long, value_name = "SECONDS", value_parser = super::values::duration, help_heading = "Time")]
+    pub duration: Option<f64>,
+    #[command(flatten)]
+    pub clock: Clock,
+
+    #[command(flatten)]
+    pub view: View,
+    /// Turn the camera once about what it looks at, in so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = super::values::duration, help_heading = "Camera")]
+    pub turntable: Option<f64>,
+    #[command(flatten)]
+    pub grid: Grid,
+    #[command(flatten)]
+    pub device: Device,
+    #[command(flatten)]
+    pub reports: Reports,
+    #[command(flatten)]
+    pub limits: Limits,
+
+    /// List the scene's clips, and end
+    #[arg(long, help_heading = "Lists")]
+    pub list_clips: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AnimationFormat {
+    /// A sequence of PNG
+    Png,
+    /// A sequence of EXR
+    Exr,
+    /// Animated PNG
+    Apng,
+    /// Animated GIF
+    Gif,
+    /// Uncompressed video
+    Y4m,
+    /// H.264, by ffmpeg
+    Mp4,
+    /// H.264 in Matroska, by ffmpeg
+    Mkv,
+    /// VP9, by ffmpeg
+    Webm,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Chroma {
+    /// One for four pixels: every player shows it
+    #[value(name = "420")]
+    C420,
+    /// One a pixel
+    #[value(name = "444")]
+    C444,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -362,8 +495,8 @@ pub enum Metric {
 pub struct List {
     /// What to list
     pub what: Listed,
-    /// The scene whose cameras to list
-    #[arg(value_hint = ValueHint::AnyPath, required_if_eq("what", "cameras"))]
+    /// The scene whose cameras or clips to list
+    #[arg(value_hint = ValueHint::AnyPath, required_if_eq_any([("what", "cameras"), ("what", "clips")]))]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub limits: Limits,
@@ -373,6 +506,8 @@ pub struct List {
 pub enum Listed {
     /// Cameras of a scene
     Cameras,
+    /// Clips of a scene that moves
+    Clips,
     /// Layers of a picture
     Aovs,
     /// Tone maps

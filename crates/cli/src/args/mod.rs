@@ -2,4 +2,5 @@
 
 pub mod high;
 pub mod low;
+pub mod pattern;
 mod values;

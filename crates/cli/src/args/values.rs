@@ -69,6 +69,16 @@ pub fn positive(text: &str) -> Result<f32, String> {
     finite(text).ok().filter(|value| *value > 0.0).ok_or_else(|| "must be a number above 0".to_owned())
 }
 
+/// A point in time.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| "must be a number of seconds".to_owned())
+}
+
+/// A stretch of time.
+pub fn duration(text: &str) -> Result<f64, String> {
+    seconds(text).ok().filter(|value| *value > 0.0 && *value <= 1e6).ok_or_else(|| "must be seconds above 0, at most 1000000".to_owned())
+}
+
 /// An angle of view.
 pub fn angle(text: &str) -> Result<f32, String> {
     finite(text).ok().filter(|value| *value >= 0.1 && *value <= 170.0).ok_or_else(|| "must be 0.1 to 170 degrees".to_owned())

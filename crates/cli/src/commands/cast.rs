@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use gridwalk_render::gridwalk::{Hit, MISS, Ray, UNFINISHED};
-use gridwalk_render::gridwalk_scene::Scene;
+use gridwalk_render::gridwalk_scene::{Animation, Scene};
 use gridwalk_render::{GpuScene, RayBatch};
 
 use crate::args::{high, low};
@@ -25,15 +25,18 @@ pub fn run(low: low::Cast, quiet: bool, interrupt: &Interrupt) -> Result<Exit> {
     output::check(&cast.target, cast.overwrite)?;
     let rays = read_rays(&cast.rays, cast.max_rays_bytes)?;
     let scene = scene::read(&cast.source, &cast.load)?;
-    let session = Session::open(&cast.device, &cast.grid, &scene, cast.repeat, started)?;
+    let mut session = Session::open(&cast.device, &cast.grid, Animation::still(scene), started)?;
+    session.tell_grid();
+    session.measure_build(cast.repeat)?;
 
     let mut answers = Answers::new(cast.occlusion, rays.len());
     // The first pass over a batch warms the device up; with repetitions it does not count.
     let mut times = vec![0.0; cast.repeat.unwrap_or(1) as usize];
     let bar = progress::bar(cast.reports.progress, rays.len() as u64, "casting");
+    let (grid, scene) = (session.player.grid(), &session.player.animation().scene);
     for part in rays.chunks(BATCH) {
         let mut batch = RayBatch::new(&session.context, part)?;
-        let mut trace = || if cast.occlusion { batch.any_hit(&session.grid) } else { batch.closest_hit(&session.grid) };
+        let mut trace = || if cast.occlusion { batch.any_hit(grid) } else { batch.closest_hit(grid) };
         if cast.repeat.is_some() {
             trace()?;
         }
@@ -43,7 +46,7 @@ pub fn run(low: low::Cast, quiet: bool, interrupt: &Interrupt) -> Result<Exit> {
         if cast.occlusion {
             answers.push_occluded(&batch.read_occluded()?);
         } else {
-            answers.push_hits(&batch.read_hits()?, &session.scene, &scene);
+            answers.push_hits(&batch.read_hits()?, session.player.scene(), scene);
         }
         bar.inc(part.len() as u64);
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gridwalk_render::Aov;
-use gridwalk_render::image::{Format, Tonemap};
+use gridwalk_render::image::{Format, MovieFormat, Tonemap};
 
 use crate::args::high::{Source, load_options};
 use crate::args::low::{Limits, List, Listed};
@@ -16,6 +16,10 @@ pub fn run(low: &List) -> Result<Exit> {
         Listed::Cameras => {
             let path = low.scene.as_ref().ok_or_else(|| Failure::usage("cameras of which scene? gridwalk list cameras SCENE"))?;
             cameras(&Source::new(path), &low.limits)
+        }
+        Listed::Clips => {
+            let path = low.scene.as_ref().ok_or_else(|| Failure::usage("clips of which scene? gridwalk list clips SCENE"))?;
+            clips(&Source::new(path), &low.limits)
         }
         Listed::Aovs => aovs(),
         Listed::Tonemaps => tonemaps(),
@@ -31,6 +35,11 @@ pub fn cameras(source: &Source, limits: &Limits) -> Result<Exit> {
         (named.name.clone(), format!("number {index}, at {x} {y} {z}"))
     });
     print(lines)
+}
+
+pub fn clips(source: &Source, limits: &Limits) -> Result<Exit> {
+    let animation = scene::open(source, &load_options(limits), None)?;
+    print(animation.clips.iter().map(|clip| (clip.name.clone(), format!("{} s", clip.duration))))
 }
 
 pub fn aovs() -> Result<Exit> {
@@ -67,7 +76,9 @@ pub fn formats() -> Result<Exit> {
         ("npz", "written by cast: hits"),
     ];
     let read = read.into_iter().map(|(name, what)| (name.to_owned(), what.to_owned()));
-    print(Format::ALL.into_iter().map(|format| (format.extension().to_owned(), format!("written: {}", format.description()))).chain(read))
+    let pictures = Format::ALL.into_iter().map(|format| (format.extension(), format!("written: {}", format.description())));
+    let movies = MovieFormat::ALL.into_iter().map(|format| (format.extension(), format!("written by animate: {}", format.description())));
+    print(pictures.chain(movies).map(|(name, what)| (name.to_owned(), what)).chain(read))
 }
 
 fn print(lines: impl Iterator<Item = (String, String)>) -> Result<Exit> {

@@ -1,5 +1,6 @@
 //! What the program does, a module a command.
 
+pub mod animate;
 pub mod cast;
 pub mod devices;
 pub mod diff;

@@ -14,6 +14,9 @@ pub struct Rate {
 const MAX_DENOMINATOR: u32 = 1_000_000;
 
 impl Rate {
+    /// One frame a second.
+    pub const ONE: Rate = Rate { numerator: 1, denominator: 1 };
+
     /// A rate of `numerator / denominator` frames a second; `None` when either is 0.
     pub fn new(numerator: u32, denominator: u32) -> Option<Rate> {
         let divisor = gcd(numerator.into(), denominator.into());
