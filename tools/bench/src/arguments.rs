@@ -21,6 +21,10 @@ pub struct Arguments {
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
 
+    /// Also tell what changed since the run whose figures this file holds, and whether the noise explains it
+    #[arg(long, value_name = "OLD.json")]
+    pub compare: Option<PathBuf>,
+
     /// What every measurement needs
     #[command(flatten)]
     pub common: Common,
@@ -29,7 +33,8 @@ pub struct Arguments {
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,
 
-    /// Measure these alone: camera and diffuse are closest hits, any is any hit on the diffuse rays [default: all]
+    /// Measure these alone: camera, reflection (of the camera rays' hits) and diffuse are closest hits, shadow (from the camera rays' hits
+    /// to the first light) and any (the diffuse rays once more) are any hits [default: all]
     #[arg(long, value_delimiter = ',', value_name = "WHAT")]
     pub only: Vec<Part>,
 
@@ -126,6 +131,10 @@ pub enum Part {
     Rebuild,
     /// Closest hits of camera rays.
     Camera,
+    /// Any hits of shadow rays.
+    Shadow,
+    /// Closest hits of mirrored rays.
+    Reflection,
     /// Closest hits of diffuse rays.
     Diffuse,
     /// Any hits of diffuse rays.

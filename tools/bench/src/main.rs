@@ -3,6 +3,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics"))]
 
 mod arguments;
+mod compare;
 mod dynamic;
 mod dynamic_report;
 #[allow(unsafe_code, reason = "calls a C library")]
@@ -12,8 +13,10 @@ mod moving;
 mod rays;
 mod report;
 mod scenes;
+mod surface;
 mod vector;
 
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
@@ -58,11 +61,22 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
             write(common, &report, &report.table())?;
         }
         None => {
+            // Read first: a name that leads nowhere is told before anything is measured.
+            let old = arguments.compare.as_deref().map(read_report).transpose()?;
             let report = run(arguments)?;
-            write(common, &report, &report.table(arguments.filter_steps.as_deref()))?;
+            let mut table = report.table(arguments.filter_steps.as_deref());
+            if let Some(old) = &old {
+                table += &compare::changes(old, &report);
+            }
+            write(common, &report, &table)?;
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn read_report(path: &Path) -> Result<Report> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    serde_json::from_str(&text).with_context(|| format!("{}: no figures of this benchmark; write them with --json", path.display()))
 }
 
 fn write(common: &Common, report: &impl Serialize, table: &str) -> Result<()> {
@@ -186,13 +200,16 @@ mod tests {
             let table = report.table(None);
             assert!(table.contains("rebuild") && table.contains("sort_scatter"), "{table}");
             assert!(!report.table(Some("sort_")).contains("overlap_count"));
+            let changes = compare::changes(&report, &report);
+            assert!(changes.contains("within the noise") && !changes.contains("slower"), "{changes}");
             let again: Report = serde_json::from_str(&serde_json::to_string(&report).unwrap()).unwrap();
             for scene in &again.scenes {
                 assert!(scene.pairs > 0 && !scene.steps.is_empty());
                 let kinds: Vec<&str> = scene.rays.iter().map(|rays| rays.kind.as_str()).collect();
-                assert_eq!(kinds, ["camera", "diffuse", "any"]);
+                assert_eq!(kinds, ["camera", "shadow", "reflection", "diffuse", "any"]);
                 for rays in &scene.rays {
-                    assert_eq!(rays.rays, 64 * 64);
+                    assert!(rays.rays == 64 * 64 || matches!(rays.kind.as_str(), "shadow" | "reflection"));
+                    assert!((1..=64 * 64).contains(&rays.rays));
                     assert!(rays.hits > 0, "{}: no {} ray hits", scene.scene, rays.kind);
                     assert_eq!(rays.difference.is_some(), has_rival);
                     // Two triangles that cross, or an edge seen edge-on, may be told differently.

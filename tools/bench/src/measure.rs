@@ -9,6 +9,7 @@ use crate::embree::{self, Embree};
 use crate::rays::{camera_rays, diffuse_rays};
 use crate::report::{Comparison, Difference, Example, RayReport, Run, SceneReport, Step, Times, median};
 use crate::scenes::Loaded;
+use crate::surface::{Surface, Traced};
 
 /// How a build is to be made.
 pub fn settings(arguments: &Common) -> BuildSettings {
@@ -59,16 +60,27 @@ pub fn measure(builder: &GridBuilder, embree: Option<&Embree>, arguments: &Argum
     }
 
     let mut rays = Vec::new();
-    let parts = [Part::Camera, Part::Diffuse, Part::Any].map(|part| arguments.measures(part));
+    let parts = [Part::Camera, Part::Shadow, Part::Reflection, Part::Diffuse, Part::Any].map(|part| arguments.measures(part));
     if parts.contains(&true) {
         let theirs = match &rival {
             Some((embree, mesh)) => Some(embree.traceable(mesh, arguments.embree_quality)?),
             None => None,
         };
-        let [camera, diffuse, any] = parts;
-        if camera {
+        let [camera, shadow, reflection, diffuse, any] = parts;
+        if camera || shadow || reflection {
             let set = camera_rays(&loaded.camera, arguments.common.size);
-            rays.push(closest("camera", &grid, theirs.as_ref(), &set, arguments.runs)?);
+            if camera {
+                rays.push(closest("camera", &grid, theirs.as_ref(), &set, arguments.runs)?);
+            }
+            let surface = Surface::new(mesh);
+            let seen = Traced::new(&grid, set)?;
+            if shadow {
+                let set = surface.shadows(&seen, loaded.scene.lights.first().copied());
+                rays.push(any_hit("shadow", &grid, theirs.as_ref(), &set, arguments.runs)?);
+            }
+            if reflection {
+                rays.push(closest("reflection", &grid, theirs.as_ref(), &surface.reflections(&seen), arguments.runs)?);
+            }
         }
         if diffuse || any {
             let size = arguments.common.size.next_multiple_of(8);
