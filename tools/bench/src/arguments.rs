@@ -56,6 +56,8 @@ pub enum Mode {
     /// what these hit. Our times are device times, Embree's wall times, of its fastest rebuild and of single rays through the tree that it
     /// makes; medians over the runs of a frame, taken in turns. Making the rays costs neither of them anything.
     Dynamic(Dynamic),
+    /// Measures one shape at growing numbers of triangles, and how times and memory grow with them
+    Growth(Growth),
 }
 
 /// Arguments of `dynamic`.
@@ -72,6 +74,30 @@ pub struct Dynamic {
     pub frames: Option<u32>,
 
     /// Runs of each frame
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub runs: u32,
+
+    /// What every measurement needs
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Arguments of `growth`.
+#[derive(Clone, Debug, Args)]
+pub struct Growth {
+    /// Which shape: sphere, bumpy, terrain, soup, stadium
+    #[arg(default_value = "bumpy")]
+    pub shape: String,
+
+    /// Triangles to begin with
+    #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..))]
+    pub least: u32,
+
+    /// Triangles to end with
+    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(100..=50_000_000))]
+    pub most: u32,
+
+    /// Runs of each size after the warm-up
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,
 

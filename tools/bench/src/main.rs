@@ -8,6 +8,7 @@ mod dynamic;
 mod dynamic_report;
 #[allow(unsafe_code, reason = "calls a C library")]
 mod embree;
+mod growth;
 mod measure;
 mod moving;
 mod rays;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
 fn start(arguments: &Arguments) -> Result<ExitCode> {
     let common = match &arguments.mode {
         Some(Mode::Dynamic(dynamic)) => &dynamic.common,
+        Some(Mode::Growth(growth)) => &growth.common,
         None => &arguments.common,
     };
     // The driver reads its environment when it is loaded, and setting a variable of one's own process is unsafe: so start again with it.
@@ -59,6 +61,10 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
         Some(Mode::Dynamic(dynamic)) => {
             let report = run_dynamic(dynamic)?;
             write(common, &report, &report.table())?;
+        }
+        Some(Mode::Growth(growth)) => {
+            let report = run(&growth.sizes())?;
+            write(common, &report, &(report.table(None) + &growth::slopes(&report)))?;
         }
         None => {
             // Read first: a name that leads nowhere is told before anything is measured.
