@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use crate::gltf::Rig;
 use crate::key_reader::KeyReader;
 use crate::sequence::Sequence;
 use crate::transform::Edit;
@@ -64,6 +65,7 @@ pub(crate) enum MeshTrack {
     #[default]
     Still,
     Keys(KeyTrack),
+    Rig(RigTrack),
 }
 
 /// How a camera moves.
@@ -71,6 +73,7 @@ pub(crate) enum MeshTrack {
 pub(crate) enum CameraTrack {
     #[default]
     Still,
+    Rig(RigTrack),
 }
 
 /// How a light moves.
@@ -78,6 +81,7 @@ pub(crate) enum CameraTrack {
 pub(crate) enum LightTrack {
     #[default]
     Still,
+    Rig(RigTrack),
 }
 
 /// A mesh's course through a sequence of files.
@@ -93,6 +97,14 @@ pub(crate) struct KeyTrack {
     pub(crate) interpolate: bool,
     /// What is done to each key-frame.
     pub(crate) edit: Edit,
+}
+
+/// A mesh, a camera or a light of a glTF file.
+#[derive(Clone, Debug)]
+pub(crate) struct RigTrack {
+    pub(crate) rig: Arc<Rig>,
+    /// Among those of its kind.
+    pub(crate) number: usize,
 }
 
 /// How long something moves.
@@ -291,19 +303,30 @@ impl Animation {
     }
 
     /// Brings `pose` to that of a deformed mesh at a time, without allocating where it held one of the same mesh before.
-    pub fn pose(&self, _mesh: usize, _time: f64, _pose: &mut Pose) {}
+    /// For meshes that are not deformed it becomes empty.
+    pub fn pose(&self, mesh: usize, time: f64, pose: &mut Pose) {
+        match self.tracks.meshes.get(mesh) {
+            Some(MeshTrack::Rig(track)) => track.rig.pose(track.number, time, pose),
+            _ => {
+                pose.matrices.clear();
+                pose.weights.clear();
+            }
+        }
+    }
 
     /// As [`Scene::camera`], at a time. Without cameras in the scene it is one that frames the scene at time 0, so that it stands still.
-    pub fn camera(&self, name: Option<&str>, _time: f64) -> Option<Camera> {
+    pub fn camera(&self, name: Option<&str>, time: f64) -> Option<Camera> {
         let number = self.scene.camera_number(name);
         match number.and_then(|number| self.tracks.cameras.get(number)) {
+            Some(CameraTrack::Rig(track)) => track.rig.camera(track.number, time),
             Some(CameraTrack::Still) | None => self.scene.camera(name),
         }
     }
 
     /// The lights at a time: always as many as [`Scene::lights`], each of the same kind.
-    pub fn lights(&self, _time: f64) -> Vec<Light> {
+    pub fn lights(&self, time: f64) -> Vec<Light> {
         let light = |(number, light): (usize, &Light)| match self.tracks.lights.get(number) {
+            Some(LightTrack::Rig(track)) => track.rig.light(track.number, time).unwrap_or(*light),
             Some(LightTrack::Still) | None => *light,
         };
         self.scene.lights.iter().enumerate().map(light).collect()

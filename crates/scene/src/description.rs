@@ -407,10 +407,11 @@ impl Builder<'_> {
         let motion = |track: &MeshTrack| match track {
             MeshTrack::Still => Motion::Still,
             MeshTrack::Keys(_) => Motion::Keys,
+            MeshTrack::Rig(_) => Motion::Still,
         };
         let keys = self.tracks.meshes.iter().map(|track| match track {
             MeshTrack::Keys(track) => Some(track.clone()),
-            MeshTrack::Still => None,
+            MeshTrack::Still | MeshTrack::Rig(_) => None,
         });
         let keys: Vec<Option<KeyTrack>> = keys.collect();
         let mut animation = Animation::still(scene);

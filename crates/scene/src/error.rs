@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::suggest::closest;
+
 /// The result of this crate's functions.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -50,7 +52,7 @@ pub enum Error {
         limit: u64,
     },
     /// A file name whose ending says no format that can be read.
-    #[error("{}: cannot tell the format by the ending; readable are .obj, .ply (also as .gz) and .toml", path.display())]
+    #[error("{}: cannot tell the format by the ending; readable are .obj, .ply (also as .gz), .gltf, .glb and .toml", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -80,12 +82,20 @@ pub enum Error {
         count: u32,
     },
     /// A clip that no file names.
-    #[error("there is no clip \"{clip}\"; {}", if known.is_empty() { "this scene has none: leave the clip out".to_owned() } else { format!("there are {}", known.join(", ")) })]
+    #[error("there is no clip \"{clip}\"; {}", clips_known(clip, known))]
     UnknownClip {
         /// What was asked for.
         clip: String,
         /// All names.
         known: Vec<String>,
+    },
+    /// A glTF file that cannot be read.
+    #[error("{file}: {message}")]
+    Gltf {
+        /// The file, or `-`.
+        file: String,
+        /// What is wrong, with the part of the file that it is wrong with, and the cure where there is one.
+        message: String,
     },
     /// A line of an OBJ file that cannot be read.
     #[error("{file}:{line}: {message}")]
@@ -143,4 +153,14 @@ impl std::fmt::Display for Place {
             Self::Byte(byte) => write!(formatter, "byte {byte}"),
         }
     }
+}
+
+/// What to say instead of a clip that there is not.
+fn clips_known(clip: &str, known: &[String]) -> String {
+    if known.is_empty() {
+        return "this scene has none: leave the clip out".to_owned();
+    }
+    let names = known.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+    let near = closest(clip, known.iter().map(String::as_str)).map(|near| format!("; did you mean \"{near}\"?")).unwrap_or_default();
+    format!("there are {names}{near}")
 }

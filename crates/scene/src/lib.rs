@@ -1,4 +1,4 @@
-//! Scene files for gridwalk: OBJ with MTL, and `scene.toml`, into triangles, materials, textures, lights and cameras.
+//! Scene files for gridwalk: OBJ with MTL, glTF, and `scene.toml`, into triangles, materials, textures, lights and cameras.
 //!
 //! [`load`] reads a path, [`load_reader`] an OBJ stream, [`generate`] makes meshes without files. Files that a scene names are opened only
 //! below the scene's own folder unless [`LoadOptions::allow_external_paths`] says otherwise, and only up to the caps of [`LoadOptions`]. No
@@ -68,6 +68,7 @@ mod error;
 mod files;
 mod frame;
 pub mod generate;
+mod gltf;
 mod key_reader;
 mod lines;
 mod load;

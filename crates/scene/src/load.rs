@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::Scene;
-use crate::animation::{KeyTrack, MeshTrack};
+use crate::animation::{CameraTrack, KeyTrack, LightTrack, MeshTrack, RigTrack};
 use crate::assets::Assets;
 use crate::files::{read_file, read_stream};
+use crate::gltf;
 use crate::key_reader::{Cache, KeyReader, first_mesh};
 use crate::mesh_file;
 use crate::sequence::{Pattern, Range, Sequence, pattern_of};
@@ -45,6 +46,7 @@ pub fn open(path: &Path, options: &LoadOptions, animation: &AnimationOptions) ->
             let bytes = read_file(path, options.max_mesh_bytes)?;
             load_mesh(&bytes, path, path.parent(), options).map(Animation::still)
         }
+        (Some("gltf" | "glb"), _) => open_gltf(path, options, animation.clip.as_deref()),
         (Some("toml"), _) => crate::description::open(path, options),
         _ if path.exists() => Err(Error::UnknownFormat { path: path.to_owned() }),
         // A name that does not exist is told with its neighbours rather than by its ending.
@@ -80,6 +82,41 @@ fn open_sequence(pattern: Pattern, folder: &Path, options: &LoadOptions) -> Resu
     animation.set_course(&[track.course()], None, None);
     animation.keys = Some(KeyReader::new(vec![Some(track.clone())], assets, cache, &animation.scene.warnings));
     animation.tracks.meshes = vec![MeshTrack::Keys(track)];
+    Ok(animation)
+}
+
+fn open_gltf(path: &Path, options: &LoadOptions, clip: Option<&str>) -> Result<Animation> {
+    let bytes = read_file(path, options.max_mesh_bytes)?;
+    let folder = folder_of(path);
+    let mut assets = Assets::new(Some(&folder), options)?;
+    let root = assets.files.clone();
+    let loaded = gltf::read(&mut assets, &bytes, &path.to_string_lossy(), root.root(), clip)?;
+    drop(bytes);
+    let mut scene = assets.scene(loaded.meshes);
+    scene.background = DEFAULT_BACKGROUND;
+    scene.cameras = loaded.cameras;
+    if loaded.lights.is_empty() {
+        scene = with_default_light(scene);
+    } else {
+        scene.lights = loaded.lights;
+    }
+    let mut animation = Animation::still(scene);
+    let rig = Arc::new(loaded.rig);
+    let track = |number: usize| RigTrack { rig: rig.clone(), number };
+    animation.clips = loaded.clips;
+    if rig.duration() > 0.0 {
+        animation.tracks.cameras = (0..rig.camera_count()).map(|at| CameraTrack::Rig(track(at))).collect();
+        animation.tracks.lights = (0..rig.light_count()).map(|at| LightTrack::Rig(track(at))).collect();
+        animation.set_course(&[rig.course()], None, None);
+    }
+    let still = |deformed: &Option<_>| deformed.is_none();
+    animation.tracks.meshes = loaded
+        .deformed
+        .iter()
+        .enumerate()
+        .map(|(at, mesh)| if still(mesh) { MeshTrack::Still } else { MeshTrack::Rig(track(at)) })
+        .collect();
+    animation.motions = loaded.deformed.into_iter().map(|mesh| mesh.map_or(Motion::Still, Motion::Deformed)).collect();
     Ok(animation)
 }
 

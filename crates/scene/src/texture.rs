@@ -69,16 +69,8 @@ impl Textures {
         let coloured_alpha = picture.color().has_alpha();
         let (width, height) = (picture.width(), picture.height());
         let mut pixels = picture.into_rgba8().into_raw();
-        let size = pixels.len() as u64;
         if width == 0 || height == 0 {
             return Err(format!("{name}: the picture has no pixels"));
-        }
-        if self.total_bytes.saturating_add(size) > self.options.max_texture_total_bytes {
-            return Err(format!(
-                "{name}: with it the textures would take {} bytes, more than the limit of {}",
-                self.total_bytes.saturating_add(size),
-                self.options.max_texture_total_bytes
-            ));
         }
         let (texels, _) = pixels.as_chunks_mut::<4>();
         let alpha_in_use = coloured_alpha && texels.iter().any(|texel| texel[3] < 255);
@@ -97,12 +89,23 @@ impl Textures {
         }
         let (texels, _) = pixels.as_chunks::<4>();
         let has_alpha = texels.iter().any(|texel| texel[3] < 255);
-        let number = u32::try_from(self.normals.len()).map_err(|_| format!("{name}: too many textures"))?;
-        self.total_bytes += size;
         let texture = Texture { name: name.to_owned(), width, height, pixels, srgb: usage == Use::Colour, has_alpha };
-        self.normals.push(usage == Use::Data && holds_normals(&texture));
+        self.add(texture, usage == Use::Data).map(Some)
+    }
+
+    /// The number of a texture that was made elsewhere; `Err` holds the reason in words. `data` is whether it may hold normals or heights.
+    pub(crate) fn add(&mut self, texture: Texture, data: bool) -> Result<u32, String> {
+        let total = self.total_bytes.saturating_add(texture.pixels.len() as u64);
+        let name = &texture.name;
+        if total > self.options.max_texture_total_bytes {
+            let limit = self.options.max_texture_total_bytes;
+            return Err(format!("{name}: with it the textures would take {total} bytes, more than the limit of {limit}"));
+        }
+        let number = u32::try_from(self.normals.len()).map_err(|_| format!("{name}: too many textures"))?;
+        self.total_bytes = total;
+        self.normals.push(data && holds_normals(&texture));
         self.textures.push(texture);
-        Ok(Some(number))
+        Ok(number)
     }
 }
 

@@ -3,6 +3,7 @@
 mod animation;
 mod committed;
 mod fuzz;
+mod gltf;
 mod nasty;
 mod oracle;
 mod ply;

@@ -100,7 +100,7 @@ fn names_that_are_not_there_are_told_with_a_neighbour() {
     let error = load(&folder.path().join("teapot.xyz"), &LoadOptions::default()).unwrap_err();
     assert_eq!(
         without_folder(&error.to_string(), folder.path()),
-        "DIR/teapot.xyz: cannot tell the format by the ending; readable are .obj, .ply (also as .gz) and .toml"
+        "DIR/teapot.xyz: cannot tell the format by the ending; readable are .obj, .ply (also as .gz), .gltf, .glb and .toml"
     );
 }
 
