@@ -60,7 +60,7 @@ pub struct BufferDesc<'a> {
     pub dedicated: bool,
 }
 
-/// An open device with one queue. Cheap to clone; the device is closed with the last clone and the last buffer.
+/// An open device with a queue, and where it has one with a second for copies. Cheap to clone; the device is closed with the last clone and the last buffer.
 #[derive(Clone)]
 pub struct Context {
     shared: Arc<Shared>,
@@ -70,6 +70,10 @@ struct Shared {
     /// `None` only while dropping.
     allocator: Mutex<Option<Allocator>>,
     commands: Mutex<Commands>,
+    /// Held for the submission alone, not while it is waited for, so that another thread can submit copies beside it.
+    queue: Mutex<vk::Queue>,
+    /// The queue for copies; `None` where they share the other one.
+    copy_queue: Option<Mutex<vk::Queue>>,
     pipeline_cache: vk::PipelineCache,
     device: ash::Device,
     debug: Option<ext::debug_utils::Device>,
@@ -79,6 +83,8 @@ struct Shared {
     allocated: AtomicU64,
     /// Most bytes that lived at once.
     peak: AtomicU64,
+    /// Buffers that were made.
+    made: AtomicU64,
     /// Set when the device was lost or a submission is still running after its time: nothing may be called or freed any more.
     lost: AtomicBool,
     abandoned: AtomicBool,
@@ -89,7 +95,13 @@ struct Commands {
     pool: vk::CommandPool,
     buffer: vk::CommandBuffer,
     fence: vk::Fence,
-    queue: vk::Queue,
+}
+
+/// A value that a timeline semaphore must have reached.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    pub(crate) semaphore: vk::Semaphore,
+    pub(crate) value: u64,
 }
 
 struct Budget {
@@ -123,10 +135,19 @@ impl Context {
     pub fn new(desc: &ContextDesc<'_>) -> Result<Context> {
         let instance = Instance::new(desc.validation)?;
         let candidate = instance.select(&desc.device)?;
-        let priorities = [1.0];
-        let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(candidate.queue_family).queue_priorities(&priorities)];
+        let priorities = [1.0, 1.0];
+        let queue = |family, count| {
+            vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(priorities.get(..count).unwrap_or_default())
+        };
+        let queues = match candidate.copy_family {
+            Some(family) if family == candidate.queue_family => vec![queue(family, 2)],
+            Some(family) => vec![queue(candidate.queue_family, 1), queue(family, 1)],
+            None => vec![queue(candidate.queue_family, 1)],
+        };
         let extensions: Vec<_> = candidate.extensions.iter().map(|name| name.as_ptr()).collect();
         let mut features = gridwalk::requirements::features();
+        // Every device of Vulkan 1.3 has timeline semaphores.
+        features.vulkan_12 = features.vulkan_12.timeline_semaphore(true).host_query_reset(candidate.has_host_query_reset);
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions)
@@ -147,18 +168,16 @@ impl Context {
         // From here on `Shared` owns all that was made, and frees it whatever fails below: destroying null handles is allowed.
         let mut shared = Shared {
             allocator: Mutex::new(None),
-            commands: Mutex::new(Commands {
-                pool: vk::CommandPool::null(),
-                buffer: vk::CommandBuffer::null(),
-                fence: vk::Fence::null(),
-                queue: vk::Queue::null(),
-            }),
+            commands: Mutex::new(Commands { pool: vk::CommandPool::null(), buffer: vk::CommandBuffer::null(), fence: vk::Fence::null() }),
+            queue: Mutex::new(vk::Queue::null()),
+            copy_queue: candidate.copy_family.map(|_| Mutex::new(vk::Queue::null())),
             pipeline_cache: vk::PipelineCache::null(),
             device,
             debug,
             heap_budget: Budget { heap: u32::try_from(heap).unwrap_or(0), limit: desc.memory_limit },
             allocated: AtomicU64::new(0),
             peak: AtomicU64::new(0),
+            made: AtomicU64::new(0),
             lost: AtomicBool::new(false),
             abandoned: AtomicBool::new(false),
             candidate,
@@ -221,6 +240,11 @@ impl Context {
         self.shared.peak.load(Ordering::Relaxed)
     }
 
+    /// How many buffers were made so far: what does not grow from one picture to the next allocates nothing.
+    pub fn allocations(&self) -> u64 {
+        self.shared.made.load(Ordering::Relaxed)
+    }
+
     /// Takes the messages that the validation layer has sent since the last call; none when it is off.
     pub fn take_validation_messages(&self) -> Vec<String> {
         std::mem::take(&mut *lock(&self.shared.instance.messages.0))
@@ -242,6 +266,19 @@ impl Context {
     /// [`Error::OutOfDeviceMemory`] when it is larger than a buffer or an allocation may be, or than what is left of the budget;
     /// [`Error::DeviceLost`] after a loss or a time-out.
     pub fn buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
+        self.make_buffer(desc, &[])
+    }
+
+    /// As [`Context::buffer`], for one that the queue for copies writes and the other reads.
+    pub(crate) fn shared_buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
+        let candidate = &self.shared.candidate;
+        match candidate.copy_family.filter(|&family| family != candidate.queue_family) {
+            Some(family) => self.make_buffer(desc, &[candidate.queue_family, family]),
+            None => self.make_buffer(desc, &[]),
+        }
+    }
+
+    fn make_buffer(&self, desc: &BufferDesc<'_>, families: &[u32]) -> Result<Buffer> {
         self.shared.check()?;
         let size = desc.size.max(16).next_multiple_of(16);
         let limits = &self.shared.candidate.info.limits;
@@ -256,7 +293,8 @@ impl Context {
             | vk::BufferUsageFlags::TRANSFER_DST
             | vk::BufferUsageFlags::INDIRECT_BUFFER
             | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
-        let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
+        let sharing = if families.is_empty() { vk::SharingMode::EXCLUSIVE } else { vk::SharingMode::CONCURRENT };
+        let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(sharing).queue_family_indices(families);
         let device = &self.shared.device;
         // SAFETY: the device lives; size and usage are valid, and the size is within the device's limit.
         let raw = unsafe { device.create_buffer(&info, None) }.map_err(|result| match result {
@@ -291,6 +329,7 @@ impl Context {
         buffer.counted = size;
         let now = self.shared.allocated.fetch_add(size, Ordering::Relaxed) + size;
         self.shared.peak.fetch_max(now, Ordering::Relaxed);
+        self.shared.made.fetch_add(1, Ordering::Relaxed);
         bound.map_err(Error::vulkan("vkBindBufferMemory"))?;
         // SAFETY: the buffer has SHADER_DEVICE_ADDRESS usage and is bound to memory.
         buffer.address = unsafe { device.get_buffer_device_address(&vk::BufferDeviceAddressInfo::default().buffer(raw)) };
@@ -318,8 +357,59 @@ impl Context {
     /// What the closure returns; [`Error::Timeout`] after 60 s on a CPU and 10 s on a GPU; [`Error::DeviceLost`]; after both of these the
     /// context is of no further use, and what it owns is given up rather than freed under a running device.
     pub fn submit<R>(&self, label: &str, record: impl FnOnce(vk::CommandBuffer) -> Result<R>) -> Result<R> {
+        self.submit_after(label, None, record)
+    }
+
+    /// As [`Context::submit`], of commands that the device begins only after a moment that was submitted before.
+    pub(crate) fn submit_after<R>(
+        &self,
+        label: &str,
+        after: Option<Moment>,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<R>,
+    ) -> Result<R> {
         let commands = lock(&self.shared.commands);
-        self.shared.submit(&commands, label, record)
+        self.shared.submit(&commands, label, after, record)
+    }
+
+    /// The family of the queue for copies: its command buffers go to [`Context::submit_copies`].
+    pub(crate) fn copy_family(&self) -> u32 {
+        self.shared.candidate.copy_family.unwrap_or(self.shared.candidate.queue_family)
+    }
+
+    /// Bits of a timestamp that the queue for copies takes; 0 where it takes none, or where the host cannot reset it.
+    pub(crate) fn copy_timestamp_bits(&self) -> u32 {
+        if self.shared.candidate.has_host_query_reset { self.shared.candidate.copy_timestamp_bits } else { 0 }
+    }
+
+    /// Submits copies, which reach a moment when they are done, and does not wait for them.
+    ///
+    /// # Safety
+    /// The command buffer is of [`Context::copy_family`], was ended, and is not pending; nothing it uses is freed or written before the
+    /// moment was waited for; the moment's value is above all that were submitted for its semaphore.
+    pub(crate) unsafe fn submit_copies(&self, cmd: vk::CommandBuffer, done: Moment) -> Result<()> {
+        self.shared.check()?;
+        let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(cmd)];
+        let signals = [vk::SemaphoreSubmitInfo::default()
+            .semaphore(done.semaphore)
+            .value(done.value)
+            .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
+        let submits = [vk::SubmitInfo2::default().command_buffer_infos(&buffers).signal_semaphore_infos(&signals)];
+        let queue = lock(self.shared.copy_queue.as_ref().unwrap_or(&self.shared.queue));
+        // SAFETY: the caller's contract; the lock keeps other submissions to the queue out.
+        unsafe { self.shared.device.queue_submit2(*queue, &submits, vk::Fence::null()) }
+            .map_err(|result| self.shared.lost(Error::vulkan("vkQueueSubmit2")(result)))
+    }
+
+    /// Waits on the host for a moment that was submitted.
+    pub(crate) fn wait(&self, label: &str, moment: Moment) -> Result<()> {
+        self.shared.check()?;
+        let (semaphores, values) = ([moment.semaphore], [moment.value]);
+        let info = vk::SemaphoreWaitInfo::default().semaphores(&semaphores).values(&values);
+        // A submission of the other kind may stand before it in the queue.
+        let timeout = 2 * self.shared.timeout();
+        // SAFETY: the semaphore is of this device and lives.
+        let waited = unsafe { self.shared.device.wait_semaphores(&info, nanoseconds(timeout)) };
+        self.shared.waited("vkWaitSemaphores", label, timeout, waited)
     }
 
     /// Records commands under a name that debuggers and validation messages show.
@@ -347,12 +437,17 @@ impl Context {
 
 impl Shared {
     fn init(&mut self) -> Result<()> {
-        let Commands { pool, buffer, fence, queue } = self.commands.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let Commands { pool, buffer, fence } = self.commands.get_mut().unwrap_or_else(PoisonError::into_inner);
         let device = &self.device;
-        // SAFETY: the device lives, its only queue family has one queue, and every info is complete. The pool and the fence are owned by
-        // `self` from the moment of their creation.
+        let queue = self.queue.get_mut().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the device lives and has the queues that its creation asked for (of one family two, where the one for copies is of the
+        // same), and every info is complete. The pool and the fence are owned by `self` from the moment of their creation.
         unsafe {
             *queue = device.get_device_queue(self.candidate.queue_family, 0);
+            if let (Some(family), Some(copies)) = (self.candidate.copy_family, &mut self.copy_queue) {
+                let index = u32::from(family == self.candidate.queue_family);
+                *copies.get_mut().unwrap_or_else(PoisonError::into_inner) = device.get_device_queue(family, index);
+            }
             *pool = device
                 .create_command_pool(
                     &vk::CommandPoolCreateInfo::default()
@@ -416,14 +511,48 @@ impl Shared {
         self.heap_budget.limit.map_or(left, |limit| left.min(limit.saturating_sub(used)))
     }
 
-    fn submit<R>(&self, commands: &Commands, label: &str, record: impl FnOnce(vk::CommandBuffer) -> Result<R>) -> Result<R> {
-        self.check()?;
-        let lost = |error: Error| {
-            if matches!(error, Error::DeviceLost) {
+    /// How long a submission may take.
+    fn timeout(&self) -> Duration {
+        Duration::from_secs(if self.candidate.info.kind == DeviceKind::Cpu { 60 } else { 10 })
+    }
+
+    /// Keeps in mind that the device was lost.
+    fn lost(&self, error: Error) -> Error {
+        if matches!(error, Error::DeviceLost) {
+            self.lost.store(true, Ordering::Release);
+        }
+        error
+    }
+
+    /// What a wait for the device has come to.
+    fn waited(&self, call: &'static str, label: &str, timeout: Duration, result: ash::prelude::VkResult<()>) -> Result<()> {
+        match result {
+            Ok(()) => Ok(()),
+            Err(vk::Result::TIMEOUT) => {
                 self.lost.store(true, Ordering::Release);
+                self.abandoned.store(true, Ordering::Release);
+                Err(Error::Timeout { label: label.to_owned(), seconds: timeout.as_secs() })
             }
-            error
-        };
+            Err(result) => {
+                // Whether the work still runs is unknown.
+                self.lost.store(true, Ordering::Release);
+                if result != vk::Result::ERROR_DEVICE_LOST {
+                    self.abandoned.store(true, Ordering::Release);
+                }
+                Err(Error::vulkan(call)(result))
+            }
+        }
+    }
+
+    fn submit<R>(
+        &self,
+        commands: &Commands,
+        label: &str,
+        after: Option<Moment>,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<R>,
+    ) -> Result<R> {
+        self.check()?;
+        let lost = |error: Error| self.lost(error);
         let device = &self.device;
         let cmd = commands.buffer;
         // SAFETY: the lock on `commands` is held, and every earlier submission was waited for, so that pool, command buffer and fence are
@@ -456,28 +585,27 @@ impl Shared {
             device.end_command_buffer(cmd).map_err(Error::vulkan("vkEndCommandBuffer")).map_err(lost)?;
             let recorded = recorded?;
             let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(cmd)];
-            let submits = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
-            device.queue_submit2(commands.queue, &submits, commands.fence).map_err(Error::vulkan("vkQueueSubmit2")).map_err(lost)?;
-            let timeout = Duration::from_secs(if self.candidate.info.kind == DeviceKind::Cpu { 60 } else { 10 });
-            let nanoseconds = u64::try_from(timeout.as_nanos()).unwrap_or(u64::MAX);
-            match device.wait_for_fences(&[commands.fence], true, nanoseconds) {
-                Ok(()) => Ok(recorded),
-                Err(vk::Result::TIMEOUT) => {
-                    self.lost.store(true, Ordering::Release);
-                    self.abandoned.store(true, Ordering::Release);
-                    Err(Error::Timeout { label: label.to_owned(), seconds: timeout.as_secs() })
-                }
-                Err(result) => {
-                    // Whether the work still runs is unknown.
-                    self.lost.store(true, Ordering::Release);
-                    if result != vk::Result::ERROR_DEVICE_LOST {
-                        self.abandoned.store(true, Ordering::Release);
-                    }
-                    Err(Error::vulkan("vkWaitForFences")(result))
-                }
+            let waits = after.map(|moment| {
+                vk::SemaphoreSubmitInfo::default()
+                    .semaphore(moment.semaphore)
+                    .value(moment.value)
+                    .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            });
+            let submits = [vk::SubmitInfo2::default().command_buffer_infos(&buffers).wait_semaphore_infos(waits.as_slice())];
+            {
+                let queue = lock(&self.queue);
+                device.queue_submit2(*queue, &submits, commands.fence).map_err(Error::vulkan("vkQueueSubmit2")).map_err(lost)?;
             }
+            let timeout = self.timeout();
+            let waited = device.wait_for_fences(&[commands.fence], true, nanoseconds(timeout));
+            self.waited("vkWaitForFences", label, timeout, waited)?;
+            Ok(recorded)
         }
     }
+}
+
+fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
 fn share(bytes: u64, part: f64) -> u64 {
@@ -560,6 +688,11 @@ impl Buffer {
         Ok(())
     }
 
+    /// Where the host sees memory that it writes piece by piece, beside the device's reading of other pieces; `None` where it sees none.
+    pub(crate) fn pointer(&self) -> Option<*mut u8> {
+        self.mapped(false)
+    }
+
     /// Where the host sees the memory, if it does without flushes; `cached` asks for memory that is fast to read.
     fn mapped(&self, cached: bool) -> Option<*mut u8> {
         let allocation = self.allocation.as_ref()?;
@@ -585,7 +718,7 @@ impl Buffer {
         }
         self.shared.check()?;
         if let Some(pointer) = self.mapped(false) {
-            // Held for the copy: no submission runs, and no other thread copies into the same bytes.
+            // Held for the copy: no submission but of copies from elsewhere runs, and no other thread copies into the same bytes.
             let _commands = lock(&self.shared.commands);
             // SAFETY: the allocation maps `size` bytes from `pointer`, and `offset + bytes` is within; the source is borrowed, so it does not
             // overlap; the lock keeps others out.
@@ -652,7 +785,10 @@ impl Buffer {
 
 impl Context {
     /// Copies bytes between two buffers and waits. Both ranges were checked by the caller.
-    fn copy(&self, from: &Buffer, from_offset: u64, to: &Buffer, to_offset: u64, size: u64) -> Result<()> {
+    pub(crate) fn copy(&self, from: &Buffer, from_offset: u64, to: &Buffer, to_offset: u64, size: u64) -> Result<()> {
+        if size == 0 {
+            return Ok(());
+        }
         self.submit("copy", |cmd| {
             let region = vk::BufferCopy { src_offset: from_offset, dst_offset: to_offset, size };
             // SAFETY: the command buffer is recording; both buffers live until the submission is done and hold the ranges.

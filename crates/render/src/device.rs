@@ -205,6 +205,10 @@ pub(crate) struct Candidate {
     pub(crate) handle: vk::PhysicalDevice,
     pub(crate) info: DeviceInfo,
     pub(crate) queue_family: u32,
+    /// Of a queue for copies beside the other: a family for copies alone, else `queue_family` if it has two queues.
+    pub(crate) copy_family: Option<u32>,
+    pub(crate) copy_timestamp_bits: u32,
+    pub(crate) has_host_query_reset: bool,
     /// Extensions to enable: those that must be when they are there, and the memory budget.
     pub(crate) extensions: Vec<&'static CStr>,
     pub(crate) has_budget: bool,
@@ -327,6 +331,12 @@ impl Instance {
             // SAFETY: the handle comes from this instance; the device knows Vulkan 1.3 and so every struct of the chain.
             unsafe { self.raw.get_physical_device_properties2(handle, &mut properties) };
         }
+        let mut vulkan12_features = vk::PhysicalDeviceVulkan12Features::default();
+        if core.api_version >= vk::API_VERSION_1_3 {
+            let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut vulkan12_features);
+            // SAFETY: as above.
+            unsafe { self.raw.get_physical_device_features2(handle, &mut features) };
+        }
         // SAFETY: the handle comes from this instance.
         let families = unsafe { self.raw.get_physical_device_queue_family_properties(handle) };
         let computes = |family: &vk::QueueFamilyProperties| family.queue_flags.contains(vk::QueueFlags::COMPUTE);
@@ -335,6 +345,19 @@ impl Instance {
             .position(|family| computes(family) && family.timestamp_valid_bits > 0)
             .or_else(|| families.iter().position(computes));
         let timestamp_bits = family.and_then(|family| families.get(family)).map_or(0, |family| family.timestamp_valid_bits);
+        let copy_family = families
+            .iter()
+            .enumerate()
+            .filter(|(_, family)| {
+                let other = vk::QueueFlags::COMPUTE | vk::QueueFlags::GRAPHICS;
+                family.queue_flags.contains(vk::QueueFlags::TRANSFER) && !family.queue_flags.intersects(other)
+            })
+            // Video queues can copy too; the engine made for it can do the least else.
+            .min_by_key(|(_, family)| family.queue_flags.as_raw().count_ones())
+            .map(|(index, _)| index)
+            .or_else(|| family.filter(|&family| families.get(family).is_some_and(|family| family.queue_count > 1)));
+        let copy_timestamp_bits =
+            copy_family.or(family).and_then(|index| families.get(index)).map_or(0, |family| family.timestamp_valid_bits);
         if family.is_none() {
             unsuitable.push("a queue for compute".to_owned());
         }
@@ -391,6 +414,9 @@ impl Instance {
             handle,
             info,
             queue_family: family.and_then(|family| u32::try_from(family).ok()).unwrap_or(0),
+            copy_family: copy_family.and_then(|family| u32::try_from(family).ok()),
+            copy_timestamp_bits,
+            has_host_query_reset: core.api_version >= vk::API_VERSION_1_3 && vulkan12_features.host_query_reset == vk::TRUE,
             extensions,
             has_budget,
         })

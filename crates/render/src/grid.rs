@@ -131,7 +131,7 @@ impl GridBuilder {
     /// [`Error::TooDense`] when not even a low density fits, or when a fixed resolution does not; [`Error::OutOfDeviceMemory`];
     /// [`Error::Gridwalk`] for settings without a meaning; those of [`Context::submit`].
     pub fn build(&self, scene: &GpuScene, settings: &BuildSettings) -> Result<Grid> {
-        let geometry = geometry(scene);
+        let geometry = scene.geometry();
         let mut settings = *settings;
         let first_pairs = u64::from(geometry.triangle_count) * FIRST_PAIRS_EACH + 1024;
         let mut pairs = first_pairs;
@@ -259,7 +259,7 @@ impl Grid {
     /// # Errors
     /// As [`GridBuilder::build`].
     pub fn rebuild(&mut self, scene: &GpuScene) -> Result<()> {
-        let geometry = geometry(scene);
+        let geometry = scene.geometry();
         let builder = GridBuilder { engine: Arc::clone(&self.engine) };
         if geometry.triangle_count <= self.capacity.triangles {
             if self.scratch.is_none() {
@@ -311,15 +311,6 @@ impl Grid {
             add_step(&mut self.stats.steps, StepTime { name: kernel.name, kind: kernel.kind.name(), ms, count: 1 });
         }
         Ok(())
-    }
-}
-
-fn geometry(scene: &GpuScene) -> Geometry {
-    Geometry {
-        positions: scene.positions.region(),
-        vertex_count: scene.vertex_count(),
-        indices: scene.indices.region(),
-        triangle_count: scene.triangle_count(),
     }
 }
 

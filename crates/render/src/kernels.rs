@@ -89,6 +89,28 @@ pub static FLAG_SPINE: Kernel = Kernel {
     spec_constants: &[],
 };
 
+/// Kernel `interpolate`, from `glsl/render/map/interpolate.comp`.
+pub static INTERPOLATE: Kernel = Kernel {
+    name: "interpolate",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/interpolate.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 80,
+    accesses: &[
+        ("first_positions", Access::Read),
+        ("first_normals", Access::Read),
+        ("first_uvs", Access::Read),
+        ("second_positions", Access::Read),
+        ("second_normals", Access::Read),
+        ("second_uvs", Access::Read),
+        ("positions", Access::Write),
+        ("normals", Access::Write),
+        ("uvs", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
 /// Kernel `light_add`, from `glsl/render/map/light_add.comp`.
 pub static LIGHT_ADD: Kernel = Kernel {
     name: "light_add",
@@ -185,6 +207,37 @@ pub static MASKED_CLOSEST_HIT: Kernel = Kernel {
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0)],
 };
 
+/// Kernel `morph`, from `glsl/render/map/morph.comp`.
+pub static MORPH: Kernel = Kernel {
+    name: "morph",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/morph.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 56,
+    accesses: &[
+        ("base_positions", Access::Read),
+        ("base_normals", Access::Read),
+        ("deltas", Access::Read),
+        ("targets", Access::Read),
+        ("positions", Access::Write),
+        ("normals", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
+/// Kernel `place`, from `glsl/render/map/place.comp`.
+pub static PLACE: Kernel = Kernel {
+    name: "place",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/place.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[("mesh_indices", Access::Read), ("mesh_materials", Access::Read), ("indices", Access::Write), ("surrounds", Access::Write)],
+    spec_constants: &[],
+};
+
 /// Kernel `reflect_emit`, from `glsl/render/map/reflect_emit.comp`.
 pub static REFLECT_EMIT: Kernel = Kernel {
     name: "reflect_emit",
@@ -228,6 +281,25 @@ pub static SHADE: Kernel = Kernel {
     spec_constants: &[],
 };
 
+/// Kernel `skin`, from `glsl/render/map/skin.comp`.
+pub static SKIN: Kernel = Kernel {
+    name: "skin",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/skin.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 56,
+    accesses: &[
+        ("base_positions", Access::Read),
+        ("base_normals", Access::Read),
+        ("influences", Access::Read),
+        ("matrices", Access::Read),
+        ("positions", Access::Write),
+        ("normals", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
 /// Every kernel of this crate, in order of name.
 pub static ALL: &[&Kernel] = &[
     &CAMERA_RAYS,
@@ -235,13 +307,17 @@ pub static ALL: &[&Kernel] = &[
     &FLAG_DOWNSWEEP,
     &FLAG_REDUCE,
     &FLAG_SPINE,
+    &INTERPOLATE,
     &LIGHT_ADD,
     &LIGHT_COUNT,
     &LIGHT_EMIT,
     &MASKED_ANY_HIT,
     &MASKED_CLOSEST_HIT,
+    &MORPH,
+    &PLACE,
     &REFLECT_EMIT,
     &SHADE,
+    &SKIN,
 ];
 
 /// Bytes of a field, found by a function that takes it.
@@ -250,6 +326,18 @@ const fn size<T, F>(_: fn(&T) -> &F) -> usize {
 }
 
 // The host's structures lie in memory as the kernels read them.
+const _: () = {
+    use gridwalk::gridwalk_core::twin::motion::ActiveTarget as Host;
+    assert!(core::mem::offset_of!(Host, positions) == 0);
+    assert!(size(|host: &Host| &host.positions) == 4);
+    assert!(core::mem::offset_of!(Host, normals) == 4);
+    assert!(size(|host: &Host| &host.normals) == 4);
+    assert!(core::mem::offset_of!(Host, weight) == 8);
+    assert!(size(|host: &Host| &host.weight) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 12);
+    assert!(size(|host: &Host| &host.reserved) == 4);
+    assert!(size_of::<Host>() == 16);
+};
 const _: () = {
     use crate::layout::Background as Host;
     assert!(core::mem::offset_of!(Host, bottom) == 0);
@@ -407,6 +495,40 @@ const _: () = {
     assert!(size_of::<Host>() == 16);
 };
 const _: () = {
+    use gridwalk::gridwalk_core::twin::motion::Influence as Host;
+    assert!(core::mem::offset_of!(Host, joint) == 0);
+    assert!(size(|host: &Host| &host.joint) == 4);
+    assert!(core::mem::offset_of!(Host, weight) == 4);
+    assert!(size(|host: &Host| &host.weight) == 4);
+    assert!(size_of::<Host>() == 8);
+};
+const _: () = {
+    use crate::push::Interpolate as Host;
+    assert!(core::mem::offset_of!(Host, first_positions) == 0);
+    assert!(size(|host: &Host| &host.first_positions) == 8);
+    assert!(core::mem::offset_of!(Host, first_normals) == 8);
+    assert!(size(|host: &Host| &host.first_normals) == 8);
+    assert!(core::mem::offset_of!(Host, first_uvs) == 16);
+    assert!(size(|host: &Host| &host.first_uvs) == 8);
+    assert!(core::mem::offset_of!(Host, second_positions) == 24);
+    assert!(size(|host: &Host| &host.second_positions) == 8);
+    assert!(core::mem::offset_of!(Host, second_normals) == 32);
+    assert!(size(|host: &Host| &host.second_normals) == 8);
+    assert!(core::mem::offset_of!(Host, second_uvs) == 40);
+    assert!(size(|host: &Host| &host.second_uvs) == 8);
+    assert!(core::mem::offset_of!(Host, positions) == 48);
+    assert!(size(|host: &Host| &host.positions) == 8);
+    assert!(core::mem::offset_of!(Host, normals) == 56);
+    assert!(size(|host: &Host| &host.normals) == 8);
+    assert!(core::mem::offset_of!(Host, uvs) == 64);
+    assert!(size(|host: &Host| &host.uvs) == 8);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 72);
+    assert!(size(|host: &Host| &host.vertex_count) == 4);
+    assert!(core::mem::offset_of!(Host, weight) == 76);
+    assert!(size(|host: &Host| &host.weight) == 4);
+    assert!(size_of::<Host>() == 80);
+};
+const _: () = {
     use crate::layout::Light as Host;
     assert!(core::mem::offset_of!(Host, position) == 0);
     assert!(size(|host: &Host| &host.position) == 12);
@@ -541,12 +663,52 @@ const _: () = {
     assert!(size_of::<Host>() == 80);
 };
 const _: () = {
+    use crate::push::Morph as Host;
+    assert!(core::mem::offset_of!(Host, base_positions) == 0);
+    assert!(size(|host: &Host| &host.base_positions) == 8);
+    assert!(core::mem::offset_of!(Host, base_normals) == 8);
+    assert!(size(|host: &Host| &host.base_normals) == 8);
+    assert!(core::mem::offset_of!(Host, deltas) == 16);
+    assert!(size(|host: &Host| &host.deltas) == 8);
+    assert!(core::mem::offset_of!(Host, targets) == 24);
+    assert!(size(|host: &Host| &host.targets) == 8);
+    assert!(core::mem::offset_of!(Host, positions) == 32);
+    assert!(size(|host: &Host| &host.positions) == 8);
+    assert!(core::mem::offset_of!(Host, normals) == 40);
+    assert!(size(|host: &Host| &host.normals) == 8);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 48);
+    assert!(size(|host: &Host| &host.vertex_count) == 4);
+    assert!(core::mem::offset_of!(Host, target_count) == 52);
+    assert!(size(|host: &Host| &host.target_count) == 4);
+    assert!(size_of::<Host>() == 56);
+};
+const _: () = {
     use crate::layout::Path as Host;
     assert!(core::mem::offset_of!(Host, weight) == 0);
     assert!(size(|host: &Host| &host.weight) == 12);
     assert!(core::mem::offset_of!(Host, slot) == 12);
     assert!(size(|host: &Host| &host.slot) == 4);
     assert!(size_of::<Host>() == 16);
+};
+const _: () = {
+    use crate::push::Place as Host;
+    assert!(core::mem::offset_of!(Host, mesh_indices) == 0);
+    assert!(size(|host: &Host| &host.mesh_indices) == 8);
+    assert!(core::mem::offset_of!(Host, mesh_materials) == 8);
+    assert!(size(|host: &Host| &host.mesh_materials) == 8);
+    assert!(core::mem::offset_of!(Host, indices) == 16);
+    assert!(size(|host: &Host| &host.indices) == 8);
+    assert!(core::mem::offset_of!(Host, surrounds) == 24);
+    assert!(size(|host: &Host| &host.surrounds) == 8);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 32);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(core::mem::offset_of!(Host, first_triangle) == 36);
+    assert!(size(|host: &Host| &host.first_triangle) == 4);
+    assert!(core::mem::offset_of!(Host, first_vertex) == 40);
+    assert!(size(|host: &Host| &host.first_vertex) == 4);
+    assert!(core::mem::offset_of!(Host, mesh) == 44);
+    assert!(size(|host: &Host| &host.mesh) == 4);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use crate::layout::QueueHeader as Host;
@@ -647,6 +809,26 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, flags) == 72);
     assert!(size(|host: &Host| &host.flags) == 4);
     assert!(size_of::<Host>() == 80);
+};
+const _: () = {
+    use crate::push::Skin as Host;
+    assert!(core::mem::offset_of!(Host, base_positions) == 0);
+    assert!(size(|host: &Host| &host.base_positions) == 8);
+    assert!(core::mem::offset_of!(Host, base_normals) == 8);
+    assert!(size(|host: &Host| &host.base_normals) == 8);
+    assert!(core::mem::offset_of!(Host, influences) == 16);
+    assert!(size(|host: &Host| &host.influences) == 8);
+    assert!(core::mem::offset_of!(Host, matrices) == 24);
+    assert!(size(|host: &Host| &host.matrices) == 8);
+    assert!(core::mem::offset_of!(Host, positions) == 32);
+    assert!(size(|host: &Host| &host.positions) == 8);
+    assert!(core::mem::offset_of!(Host, normals) == 40);
+    assert!(size(|host: &Host| &host.normals) == 8);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 48);
+    assert!(size(|host: &Host| &host.vertex_count) == 4);
+    assert!(core::mem::offset_of!(Host, influences_each) == 52);
+    assert!(size(|host: &Host| &host.influences_each) == 4);
+    assert!(size_of::<Host>() == 56);
 };
 const _: () = {
     use crate::layout::Surface as Host;

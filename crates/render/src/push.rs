@@ -148,3 +148,62 @@ pub(crate) struct Shade {
     pub(crate) flags: u32,
     pub(crate) padding: u32,
 }
+
+/// Of kernel `interpolate`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Interpolate {
+    pub(crate) first_positions: u64,
+    pub(crate) first_normals: u64,
+    pub(crate) first_uvs: u64,
+    pub(crate) second_positions: u64,
+    pub(crate) second_normals: u64,
+    pub(crate) second_uvs: u64,
+    pub(crate) positions: u64,
+    pub(crate) normals: u64,
+    pub(crate) uvs: u64,
+    pub(crate) vertex_count: u32,
+    pub(crate) weight: f32,
+}
+
+/// Of kernel `morph`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Morph {
+    pub(crate) base_positions: u64,
+    pub(crate) base_normals: u64,
+    pub(crate) deltas: u64,
+    pub(crate) targets: u64,
+    pub(crate) positions: u64,
+    pub(crate) normals: u64,
+    pub(crate) vertex_count: u32,
+    pub(crate) target_count: u32,
+}
+
+/// Of kernel `skin`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Skin {
+    pub(crate) base_positions: u64,
+    pub(crate) base_normals: u64,
+    pub(crate) influences: u64,
+    pub(crate) matrices: u64,
+    pub(crate) positions: u64,
+    pub(crate) normals: u64,
+    pub(crate) vertex_count: u32,
+    pub(crate) influences_each: u32,
+}
+
+/// Of kernel `place`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Place {
+    pub(crate) mesh_indices: u64,
+    pub(crate) mesh_materials: u64,
+    pub(crate) indices: u64,
+    pub(crate) surrounds: u64,
+    pub(crate) triangle_count: u32,
+    pub(crate) first_triangle: u32,
+    pub(crate) first_vertex: u32,
+    pub(crate) mesh: u32,
+}

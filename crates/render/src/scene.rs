@@ -1,24 +1,189 @@
 //! A scene in device memory.
 
 use crate::{Buffer, BufferDesc, BufferKind, Context, Error, Result, layout};
-use bytemuck::NoUninit;
-use gridwalk_scene::{Background, Light, Material, Scene, Texture};
+use ash::vk;
+use gridwalk::Geometry;
+use gridwalk_scene::{Background, Light, Material, Mesh, Scene, Texture};
 
 /// A scene in device memory: geometry, materials, textures, lights, background.
 #[derive(Debug)]
 pub struct GpuScene {
-    pub(crate) positions: Buffer,
-    pub(crate) indices: Buffer,
-    pub(crate) table: Buffer,
+    arrays: Arrays,
+    surfaces: Surfaces,
+    lights: Buffer,
+    mesh_starts: Buffer,
+    table: Buffer,
     /// Reached through the table alone.
-    _others: Vec<Buffer>,
-    vertex_count: u32,
+    _panorama: Buffer,
+    _srgb: Buffer,
+    /// Vertices of each mesh, and where they begin: their ranges may have room for more.
+    ranges: Vec<VertexRange>,
     triangle_count: u32,
-    light_count: u32,
-    mesh_starts: Vec<u32>,
+    starts: Vec<u32>,
+    host_lights: Vec<layout::Light>,
+    host_table: layout::SceneTable,
+    /// What of it the device does not have yet.
+    stale: Stale,
+}
+
+/// A mesh's part of the arrays of vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct VertexRange {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    /// Vertices that the range has room for.
+    pub(crate) room: u32,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Stale {
+    table: bool,
+    lights: bool,
+    starts: bool,
+}
+
+/// What there is of each vertex and of each triangle.
+#[derive(Debug)]
+pub(crate) struct Arrays {
+    pub(crate) positions: Buffer,
+    pub(crate) normals: Buffer,
+    pub(crate) uvs: Buffer,
+    pub(crate) indices: Buffer,
+    pub(crate) surrounds: Buffer,
+    vertices: u32,
+    triangles: u32,
+}
+
+impl Arrays {
+    /// Room for so many vertices and triangles.
+    pub(crate) fn new(context: &Context, vertices: u32, triangles: u32) -> Result<Arrays> {
+        let buffer = |name, count: u32, size: u64| {
+            context.buffer(&BufferDesc { name, size: u64::from(count) * size, kind: BufferKind::Device, dedicated: false })
+        };
+        Ok(Arrays {
+            positions: buffer("scene positions", vertices, 12)?,
+            normals: buffer("scene normals", vertices, 12)?,
+            uvs: buffer("scene texture coordinates", vertices, 8)?,
+            indices: buffer("scene indices", triangles, 12)?,
+            surrounds: buffer("scene triangle materials", triangles, 8)?,
+            vertices,
+            triangles,
+        })
+    }
+
+    /// Buffers of one [`Arrays`].
+    pub(crate) const BUFFERS: u32 = 5;
+
+    pub(crate) fn write_vertices(&self, mesh: &Mesh, first_vertex: u32) -> Result<()> {
+        let first = u64::from(first_vertex);
+        self.positions.write(first * 12, &mesh.positions)?;
+        self.normals.write(first * 12, &mesh.normals)?;
+        self.uvs.write(first * 8, &mesh.uvs)
+    }
+
+    /// The sum of an index and `first_vertex` is within what `check` has allowed.
+    pub(crate) fn write_triangles(&self, mesh: &Mesh, mesh_id: u32, first_vertex: u32, first_triangle: u32) -> Result<()> {
+        let first = u64::from(first_triangle);
+        let shifted: Vec<[u32; 3]> = mesh.indices.iter().map(|corners| corners.map(|corner| corner + first_vertex)).collect();
+        self.indices.write(first * 12, &shifted)?;
+        let surrounds: Vec<layout::Surround> =
+            mesh.materials.iter().map(|&material| layout::Surround { material, mesh: mesh_id }).collect();
+        self.surrounds.write(first * 8, &surrounds)
+    }
+
+    pub(crate) fn triangle_room(&self) -> u32 {
+        self.triangles
+    }
+
+    fn bytes(&self) -> u64 {
+        [&self.positions, &self.normals, &self.uvs, &self.indices, &self.surrounds].iter().map(|buffer| buffer.size()).sum()
+    }
+}
+
+/// Materials and textures, of which key-frames may bring more.
+#[derive(Debug)]
+struct Surfaces {
+    materials: Buffer,
+    textures: Buffer,
+    texels: Buffer,
+    material_count: usize,
+    texture_count: usize,
+    texel_count: u64,
     has_masks: bool,
     has_mirrors: bool,
-    bytes: u64,
+}
+
+impl Surfaces {
+    fn new(context: &Context, scene: &Scene) -> Result<Surfaces> {
+        let none = |name| context.buffer(&BufferDesc { name, size: 0, kind: BufferKind::Device, dedicated: false });
+        let mut surfaces = Surfaces {
+            materials: none("scene materials")?,
+            textures: none("scene textures")?,
+            texels: none("scene texels")?,
+            material_count: 0,
+            texture_count: 0,
+            texel_count: 0,
+            has_masks: false,
+            has_mirrors: false,
+        };
+        surfaces.append(context, scene, false)?;
+        Ok(surfaces)
+    }
+
+    /// Brings the materials and textures to the device that it does not have yet; the scene was checked. With `slack`, what must grow grows
+    /// by a quarter at least. Returns the number of buffers that were made anew.
+    fn append(&mut self, context: &Context, scene: &Scene, slack: bool) -> Result<u32> {
+        let added = scene.materials.get(self.material_count..).unwrap_or_default();
+        let materials: Vec<layout::Material> = added.iter().map(|material| device_material(material, &scene.textures)).collect();
+        let mut first_texel = self.texel_count;
+        let mut textures = Vec::new();
+        let new_textures = scene.textures.get(self.texture_count..).unwrap_or_default();
+        for texture in new_textures {
+            // In range: the check has bounded the sum.
+            let first = first_texel as u32;
+            textures.push(layout::Texture {
+                width: texture.width,
+                height: texture.height,
+                first_texel: first,
+                srgb: u32::from(texture.srgb),
+            });
+            first_texel += u64::from(texture.width) * u64::from(texture.height);
+        }
+        let mut grown = 0;
+        let mut room = |buffer: &mut Buffer, used: u64, needed: u64| {
+            if needed <= buffer.size() {
+                return Ok::<_, Error>(());
+            }
+            let size = if slack { with_slack(needed, buffer.size()) } else { needed };
+            let name = buffer.name().to_owned();
+            let larger = context.buffer(&BufferDesc { name: &name, size, kind: BufferKind::Device, dedicated: false })?;
+            context.copy(buffer, 0, &larger, 0, used)?;
+            *buffer = larger;
+            grown += 1;
+            Ok(())
+        };
+        let material_bytes = |count: usize| (count * size_of::<layout::Material>()) as u64;
+        let texture_bytes = |count: usize| (count * size_of::<layout::Texture>()) as u64;
+        room(&mut self.materials, material_bytes(self.material_count), material_bytes(scene.materials.len()))?;
+        room(&mut self.textures, texture_bytes(self.texture_count), texture_bytes(scene.textures.len()))?;
+        room(&mut self.texels, self.texel_count * 4, first_texel * 4)?;
+        self.materials.write(material_bytes(self.material_count), &materials)?;
+        self.textures.write(texture_bytes(self.texture_count), &textures)?;
+        for (texture, placed) in new_textures.iter().zip(&textures) {
+            self.texels.write(u64::from(placed.first_texel) * 4, &texture.pixels)?;
+        }
+        self.has_masks |= materials.iter().any(|material| material.opacity_map != layout::NO_MAP);
+        self.has_mirrors |= materials.iter().any(|material| material.flags & layout::MATERIAL_MIRROR != 0);
+        self.material_count = scene.materials.len();
+        self.texture_count = scene.textures.len();
+        self.texel_count = first_texel;
+        Ok(grown)
+    }
+}
+
+/// What is made instead of memory of `now` that must hold `needed`: more than just enough, so that what grows does so rarely.
+pub(crate) fn with_slack(needed: u64, now: u64) -> u64 {
+    needed.max(now.saturating_add(now / 4))
 }
 
 impl GpuScene {
@@ -29,94 +194,170 @@ impl GpuScene {
     /// [`Context::submit`].
     pub fn upload(context: &Context, scene: &Scene) -> Result<GpuScene> {
         let counts = check(scene)?;
-        let mut bytes = 0;
-        let mut buffer = |name: &'static str, size: u64| {
-            let buffer = context.buffer(&BufferDesc { name, size, kind: BufferKind::Device, dedicated: false })?;
-            bytes += buffer.size();
-            Ok::<_, Error>(buffer)
-        };
-        let vertices = u64::from(counts.vertices);
-        let triangles = u64::from(counts.triangles);
-        let positions = buffer("scene positions", vertices * 12)?;
-        let normals = buffer("scene normals", vertices * 12)?;
-        let uvs = buffer("scene texture coordinates", vertices * 8)?;
-        let indices = buffer("scene indices", triangles * 12)?;
-        let surrounds = buffer("scene triangle materials", triangles * 8)?;
-        let mut first_vertex = 0_u32;
-        let mut mesh_starts = Vec::with_capacity(scene.meshes.len());
-        let mut first_triangle = 0_u32;
+        let arrays = Arrays::new(context, counts.vertices, counts.triangles)?;
+        let mut ranges = Vec::with_capacity(scene.meshes.len());
+        let mut starts = Vec::with_capacity(scene.meshes.len());
+        let (mut first_vertex, mut first_triangle) = (0, 0);
         for (mesh_id, mesh) in (0..).zip(&scene.meshes) {
-            mesh_starts.push(first_triangle);
-            positions.write(u64::from(first_vertex) * 12, &mesh.positions)?;
-            normals.write(u64::from(first_vertex) * 12, &mesh.normals)?;
-            uvs.write(u64::from(first_vertex) * 8, &mesh.uvs)?;
-            let shifted: Vec<[u32; 3]> = mesh.indices.iter().map(|corners| corners.map(|corner| corner + first_vertex)).collect();
-            indices.write(u64::from(first_triangle) * 12, &shifted)?;
-            let of_mesh: Vec<layout::Surround> =
-                mesh.materials.iter().map(|&material| layout::Surround { material, mesh: mesh_id }).collect();
-            surrounds.write(u64::from(first_triangle) * 8, &of_mesh)?;
+            arrays.write_vertices(mesh, first_vertex)?;
+            arrays.write_triangles(mesh, mesh_id, first_vertex, first_triangle)?;
             // In range: `check` has added them all up.
-            first_vertex += mesh.positions.len() as u32;
+            let count = mesh.positions.len() as u32;
+            ranges.push(VertexRange { first: first_vertex, count, room: count });
+            starts.push(first_triangle);
+            first_vertex += count;
             first_triangle += mesh.indices.len() as u32;
         }
-
-        let texels = buffer("scene texels", counts.texels * 4)?;
-        let mut textures = Vec::with_capacity(scene.textures.len());
-        let mut first_texel = 0_u64;
-        for texture in &scene.textures {
-            texels.write(first_texel * 4, &texture.pixels)?;
-            textures.push(layout::Texture {
-                width: texture.width,
-                height: texture.height,
-                first_texel: first_texel as u32,
-                srgb: u32::from(texture.srgb),
-            });
-            first_texel += u64::from(texture.width) * u64::from(texture.height);
-        }
-
-        let materials: Vec<layout::Material> = scene.materials.iter().map(|material| device_material(material, &scene.textures)).collect();
+        let surfaces = Surfaces::new(context, scene)?;
         let lights = scene.lights.iter().map(device_light).collect::<Result<Vec<_>>>()?;
         let (background, panorama) = device_background(&scene.background, scene.up)?;
-        let mut others = vec![normals, uvs, surrounds, texels];
-        let mut filled = |name: &'static str, data: &[u8]| {
-            let made = buffer(name, data.len() as u64)?;
-            made.write(0, data)?;
-            let address = made.address();
-            others.push(made);
-            Ok::<_, Error>(address)
-        };
+        let panorama = context.upload("scene panorama", panorama)?;
+        let srgb = context.upload("sRGB table", &srgb_table())?;
         let table = layout::SceneTable {
-            mesh_starts: filled("scene mesh starts", bytes_of(&mesh_starts))?,
-            materials: filled("scene materials", bytes_of(&materials))?,
-            textures: filled("scene textures", bytes_of(&textures))?,
-            lights: filled("scene lights", bytes_of(&lights))?,
-            panorama: filled("scene panorama", bytes_of(panorama))?,
-            srgb: filled("sRGB table", bytes_of(&srgb_table()))?,
-            positions: positions.address(),
-            indices: indices.address(),
-            normals: others[0].address(),
-            uvs: others[1].address(),
-            surrounds: others[2].address(),
-            texels: others[3].address(),
+            panorama: panorama.address(),
+            srgb: srgb.address(),
             ambient: scene.ambient,
             triangle_count: counts.triangles,
             background,
+            ..layout::SceneTable::default()
         };
-        let table_buffer = buffer("scene table", size_of::<layout::SceneTable>() as u64)?;
-        table_buffer.write(0, &[table])?;
-        Ok(GpuScene {
-            positions,
-            indices,
-            table: table_buffer,
-            _others: others,
-            vertex_count: counts.vertices,
+        let mut gpu = GpuScene {
+            arrays,
+            surfaces,
+            lights: context.upload("scene lights", &lights)?,
+            mesh_starts: context.upload("scene mesh starts", &starts)?,
+            table: context.upload("scene table", &[table])?,
+            _panorama: panorama,
+            _srgb: srgb,
+            ranges,
             triangle_count: counts.triangles,
-            light_count: counts.lights,
-            mesh_starts,
-            has_masks: materials.iter().any(|material| material.opacity_map != layout::NO_MAP),
-            has_mirrors: materials.iter().any(|material| material.flags & layout::MATERIAL_MIRROR != 0),
-            bytes,
-        })
+            starts,
+            host_lights: lights,
+            host_table: table,
+            stale: Stale::default(),
+        };
+        gpu.link();
+        gpu.table.write(0, &[gpu.host_table])?;
+        gpu.stale = Stale::default();
+        Ok(gpu)
+    }
+
+    /// Puts the addresses and counts into the host's table.
+    fn link(&mut self) {
+        let table = layout::SceneTable {
+            positions: self.arrays.positions.address(),
+            indices: self.arrays.indices.address(),
+            normals: self.arrays.normals.address(),
+            uvs: self.arrays.uvs.address(),
+            surrounds: self.arrays.surrounds.address(),
+            mesh_starts: self.mesh_starts.address(),
+            materials: self.surfaces.materials.address(),
+            textures: self.surfaces.textures.address(),
+            texels: self.surfaces.texels.address(),
+            lights: self.lights.address(),
+            triangle_count: self.triangle_count,
+            ..self.host_table
+        };
+        self.stale.table |= bytemuck::bytes_of(&table) != bytemuck::bytes_of(&self.host_table);
+        self.host_table = table;
+    }
+
+    pub(crate) fn arrays(&self) -> &Arrays {
+        &self.arrays
+    }
+
+    pub(crate) fn ranges(&self) -> &[VertexRange] {
+        &self.ranges
+    }
+
+    /// Address of the table that kernels take.
+    pub(crate) fn table(&self) -> u64 {
+        self.table.address()
+    }
+
+    /// Puts other arrays in place of those there are, for ranges of other sizes. What they hold is the caller's matter.
+    pub(crate) fn replace_arrays(&mut self, arrays: Arrays, ranges: Vec<VertexRange>) {
+        self.arrays = arrays;
+        self.ranges = ranges;
+        self.link();
+    }
+
+    /// Tells how many vertices and triangles each mesh has now. The arrays have room for them.
+    pub(crate) fn set_counts(&mut self, vertices: &[u32], starts: &[u32], triangle_count: u32) {
+        for (range, &count) in self.ranges.iter_mut().zip(vertices) {
+            range.count = count;
+        }
+        if self.starts != starts {
+            self.starts.clear();
+            self.starts.extend_from_slice(starts);
+            self.stale.starts = true;
+        }
+        self.triangle_count = triangle_count;
+        self.link();
+    }
+
+    /// Takes other lights, as many as there were.
+    pub(crate) fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
+        if lights.len() != self.host_lights.len() {
+            let reason = format!("it has {} lights at one time and {} at another", self.host_lights.len(), lights.len());
+            return Err(Error::Scene { reason });
+        }
+        for (host, light) in self.host_lights.iter_mut().zip(lights) {
+            let light = device_light(light)?;
+            self.stale.lights |= bytemuck::bytes_of(host) != bytemuck::bytes_of(&light);
+            *host = light;
+        }
+        Ok(())
+    }
+
+    /// Brings materials and textures to the device that were added to the scene that it was made of. Returns the number of buffers that
+    /// were made anew.
+    pub(crate) fn append_surfaces(&mut self, context: &Context, scene: &Scene) -> Result<u32> {
+        if self.surfaces.material_count == scene.materials.len() && self.surfaces.texture_count == scene.textures.len() {
+            return Ok(0);
+        }
+        check_surfaces(scene)?;
+        let grown = self.surfaces.append(context, scene, true)?;
+        self.link();
+        if grown > 0 {
+            // At once: what it names is freed.
+            self.table.write(0, &[self.host_table])?;
+        }
+        Ok(grown)
+    }
+
+    /// Whether [`GpuScene::record_tables`] has anything to do.
+    pub(crate) fn has_stale_tables(&self) -> bool {
+        self.stale != Stale::default()
+    }
+
+    /// Records the copies of all tables that changed.
+    pub(crate) fn record_tables(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        let update = |buffer: &Buffer, bytes: &[u8]| update_buffer(device, cmd, buffer, 0, bytes);
+        if self.stale.table {
+            update(&self.table, bytemuck::bytes_of(&self.host_table));
+        }
+        if self.stale.lights {
+            update(&self.lights, bytemuck::cast_slice(&self.host_lights));
+        }
+        if self.stale.starts {
+            update(&self.mesh_starts, bytemuck::cast_slice(&self.starts));
+        }
+    }
+
+    /// The device has all that [`GpuScene::record_tables`] recorded.
+    pub(crate) fn tables_are_written(&mut self) {
+        self.stale = Stale::default();
+    }
+
+    /// What a grid is built over.
+    pub(crate) fn geometry(&self) -> Geometry {
+        Geometry {
+            positions: self.arrays.positions.region(),
+            vertex_count: self.arrays.vertices,
+            indices: self.arrays.indices.region(),
+            triangle_count: self.triangle_count,
+        }
     }
 
     /// Number of triangles of all meshes.
@@ -126,17 +367,17 @@ impl GpuScene {
 
     /// Number of vertices of all meshes.
     pub fn vertex_count(&self) -> u32 {
-        self.vertex_count
+        self.ranges.iter().map(|range| range.count).sum()
     }
 
     /// Number of lights.
     pub fn light_count(&self) -> u32 {
-        self.light_count
+        self.host_lights.len() as u32
     }
 
     /// First triangle of each mesh: the triangle of a hit counts over all meshes.
     pub fn mesh_starts(&self) -> &[u32] {
-        &self.mesh_starts
+        &self.starts
     }
 
     /// The mesh of a triangle, and the triangle's number within it.
@@ -144,18 +385,18 @@ impl GpuScene {
         if triangle >= self.triangle_count {
             return None;
         }
-        let mesh = self.mesh_starts.partition_point(|&start| start <= triangle).checked_sub(1)?;
-        Some((u32::try_from(mesh).ok()?, triangle - self.mesh_starts.get(mesh)?))
+        let mesh = self.starts.partition_point(|&start| start <= triangle).checked_sub(1)?;
+        Some((u32::try_from(mesh).ok()?, triangle - self.starts.get(mesh)?))
     }
 
     /// Whether any material has holes.
     pub fn has_masks(&self) -> bool {
-        self.has_masks
+        self.surfaces.has_masks
     }
 
     /// Whether any material reflects as a mirror.
     pub fn has_mirrors(&self) -> bool {
-        self.has_mirrors
+        self.surfaces.has_mirrors
     }
 
     /// Brings the positions back to the host, as the grid is built of them; those that no triangle names may hold anything.
@@ -163,7 +404,7 @@ impl GpuScene {
     /// # Errors
     /// Those of [`Buffer::read`].
     pub fn read_positions(&self) -> Result<Vec<[f32; 3]>> {
-        self.positions.read(0, self.vertex_count as usize)
+        self.arrays.positions.read(0, self.arrays.vertices as usize)
     }
 
     /// Brings the triangles of all meshes back to the host.
@@ -171,52 +412,94 @@ impl GpuScene {
     /// # Errors
     /// Those of [`Buffer::read`].
     pub fn read_indices(&self) -> Result<Vec<[u32; 3]>> {
-        self.indices.read(0, self.triangle_count as usize)
+        self.arrays.indices.read(0, self.triangle_count as usize)
     }
 
     /// Bytes of device memory.
     pub fn bytes(&self) -> u64 {
-        self.bytes
+        let Surfaces { materials, textures, texels, .. } = &self.surfaces;
+        let others = [materials, textures, texels, &self.lights, &self.mesh_starts, &self.table, &self._panorama, &self._srgb];
+        self.arrays.bytes() + others.iter().map(|buffer| buffer.size()).sum::<u64>()
     }
 }
 
-fn bytes_of<T: NoUninit>(data: &[T]) -> &[u8] {
-    bytemuck::cast_slice(data)
+/// Most bytes of one `vkCmdUpdateBuffer`.
+const UPDATE_BYTES: usize = 65_536;
+
+/// Records that bytes are put into a buffer: a multiple of 4, at an offset that is one, within the buffer.
+pub(crate) fn update_buffer(device: &ash::Device, cmd: vk::CommandBuffer, buffer: &Buffer, offset: u64, bytes: &[u8]) {
+    debug_assert!(offset + bytes.len() as u64 <= buffer.size());
+    for (at, piece) in (offset..).step_by(UPDATE_BYTES).zip(bytes.chunks(UPDATE_BYTES)) {
+        // SAFETY: the command buffer is recording (its recorder is the caller); the buffer lives until the submission was waited for and
+        // has room, which the caller has seen to.
+        unsafe { device.cmd_update_buffer(cmd, buffer.raw(), at, piece) };
+    }
 }
 
 struct Counts {
     vertices: u32,
     triangles: u32,
-    lights: u32,
-    texels: u64,
+}
+
+fn bad(reason: String) -> Error {
+    Error::Scene { reason }
+}
+
+fn bounded(what: &str, count: u64, most: u32) -> Result<u32> {
+    u32::try_from(count).ok().filter(|&count| count <= most).ok_or_else(|| bad(format!("{count} {what}; {most} are possible")))
 }
 
 /// Every index that a kernel will follow.
 fn check(scene: &Scene) -> Result<Counts> {
-    let bad = |reason: String| Error::Scene { reason };
-    let (mut vertices, mut triangles, mut texels) = (0_u64, 0_u64, 0_u64);
+    let (mut vertices, mut triangles) = (0_u64, 0_u64);
     for mesh in &scene.meshes {
-        let count = mesh.positions.len();
-        if mesh.normals.len() != count || mesh.uvs.len() != count {
-            return Err(bad(format!(
-                "mesh {}: {} normals and {} texture coordinates for {count} positions",
-                mesh.name,
-                mesh.normals.len(),
-                mesh.uvs.len()
-            )));
-        }
-        if mesh.materials.len() != mesh.indices.len() {
-            return Err(bad(format!("mesh {}: {} materials for {} triangles", mesh.name, mesh.materials.len(), mesh.indices.len())));
-        }
-        if let Some(index) = mesh.indices.as_flattened().iter().find(|&&index| index as usize >= count) {
-            return Err(bad(format!("mesh {}: vertex {index} of {count}", mesh.name)));
-        }
-        if let Some(material) = mesh.materials.iter().find(|&&material| material as usize >= scene.materials.len()) {
-            return Err(bad(format!("mesh {}: material {material} of {}", mesh.name, scene.materials.len())));
-        }
-        vertices += count as u64;
+        check_mesh(mesh, scene.materials.len()).map_err(bad)?;
+        vertices += mesh.positions.len() as u64;
         triangles += mesh.indices.len() as u64;
     }
+    check_surfaces(scene)?;
+    bounded("lights", scene.lights.len() as u64, MAX_WORDS)?;
+    check_counts(vertices, triangles)
+}
+
+/// Bounds the vertices and triangles of all meshes.
+fn check_counts(vertices: u64, triangles: u64) -> Result<Counts> {
+    Ok(Counts {
+        vertices: bounded("vertices", vertices, gridwalk::MAX_VERTICES)?,
+        triangles: bounded("triangles", triangles, gridwalk::MAX_TRIANGLES)?,
+    })
+}
+
+/// Room for the vertices of all ranges and for triangles, in words that kernels can index.
+pub(crate) fn check_room(vertices: u64, triangles: u64) -> Result<(u32, u32)> {
+    check_counts(vertices, triangles).map(|counts| (counts.vertices, counts.triangles))
+}
+
+/// What is wrong with a mesh.
+pub(crate) fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), String> {
+    let count = mesh.positions.len();
+    if mesh.normals.len() != count || mesh.uvs.len() != count {
+        return Err(format!(
+            "mesh {}: {} normals and {} texture coordinates for {count} positions",
+            mesh.name,
+            mesh.normals.len(),
+            mesh.uvs.len()
+        ));
+    }
+    if mesh.materials.len() != mesh.indices.len() {
+        return Err(format!("mesh {}: {} materials for {} triangles", mesh.name, mesh.materials.len(), mesh.indices.len()));
+    }
+    if let Some(index) = mesh.indices.as_flattened().iter().find(|&&index| index as usize >= count) {
+        return Err(format!("mesh {}: vertex {index} of {count}", mesh.name));
+    }
+    if let Some(material) = mesh.materials.iter().find(|&&material| material as usize >= materials) {
+        return Err(format!("mesh {}: material {material} of {materials}", mesh.name));
+    }
+    Ok(())
+}
+
+fn check_surfaces(scene: &Scene) -> Result<()> {
+    let mut texels = 0_u64;
     for texture in &scene.textures {
         let size = u64::from(texture.width) * u64::from(texture.height);
         if size == 0 || size.checked_mul(4) != Some(texture.pixels.len() as u64) {
@@ -236,17 +519,7 @@ fn check(scene: &Scene) -> Result<Counts> {
             return Err(bad(format!("material {}: texture {map} of {}", material.name, scene.textures.len())));
         }
     }
-    let bounded = |what: &str, count: u64, most: u32| match u32::try_from(count) {
-        Ok(count) if count <= most => Ok(count),
-        _ => Err(bad(format!("{count} {what}; {most} are possible"))),
-    };
-    bounded("texels", texels, MAX_WORDS)?;
-    Ok(Counts {
-        vertices: bounded("vertices", vertices, gridwalk::MAX_VERTICES)?,
-        triangles: bounded("triangles", triangles, gridwalk::MAX_TRIANGLES)?,
-        lights: bounded("lights", scene.lights.len() as u64, MAX_WORDS)?,
-        texels,
-    })
+    bounded("texels", texels, MAX_WORDS).map(drop)
 }
 
 /// Words of an array that a kernel can index: SPIR-V takes indices as signed.

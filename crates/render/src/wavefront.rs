@@ -331,7 +331,7 @@ impl<'a> Batch<'a> {
 
     fn record(&self, recorder: &mut Recorder<'_>, span: Span, step: Step) -> Result<()> {
         let renderer = self.renderer;
-        let scene = self.scene.table.address();
+        let scene = self.scene.table();
         // A queue's buffers alternate between bounces.
         let here = |bounce: u32| (bounce % 2) as usize;
         match step {
@@ -484,7 +484,7 @@ impl<'a> Batch<'a> {
         if self.scene.has_masks() {
             let push = push::MaskedClosestHit {
                 grid: self.grid.address(),
-                scene: self.scene.table.address(),
+                scene: self.scene.table(),
                 queue: self.headers.address() + header,
                 rays: rays.address(),
                 hits: self.hits.address(),
@@ -502,7 +502,7 @@ impl<'a> Batch<'a> {
         if self.scene.has_masks() {
             let push = push::MaskedAnyHit {
                 grid: self.grid.address(),
-                scene: self.scene.table.address(),
+                scene: self.scene.table(),
                 queue: self.headers.address() + header,
                 rays: self.shadow_rays.address(),
                 occluded: self.occluded.address(),

@@ -2,6 +2,7 @@
 #ifndef RENDER_SCENE_GLSL
 #define RENDER_SCENE_GLSL
 
+#include "render/shared/surround.glsl"
 #include "shared/types.glsl"
 
 const uint NO_MAP = 0xFFFFFFFFu;
@@ -62,16 +63,9 @@ struct Background {
     uint height;
 };
 
-// A triangle's material and the mesh that it belongs to.
-struct Surround {
-    uint material;
-    uint mesh;
-};
-
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer SceneFloats { float word[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer SceneUints { uint word[]; };
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer SceneUvs { vec2 uv[]; };
-layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Surrounds { Surround triangle[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Materials { Material material[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Textures { Texture texture[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Lights { Light light[]; };
