@@ -1,6 +1,7 @@
 //! Integration tests of gridwalk.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs, reason = "a test that fails panics")]
 
+mod animation;
 mod cli;
 mod image;
 mod kernels;

@@ -746,6 +746,16 @@ impl Buffer {
     /// # Errors
     /// [`Error::OutOfRange`], or those of [`Context::submit`] where the host cannot see the memory.
     pub fn read<T: AnyBitPattern + NoUninit>(&self, offset: u64, count: usize) -> Result<Vec<T>> {
+        self.read_by(None, offset, count)
+    }
+
+    /// Whether the host reads the memory directly.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.mapped(true).is_some()
+    }
+
+    /// As [`Buffer::read`], where the host cannot see the memory by way of a buffer made for read-back, or of a new one.
+    pub(crate) fn read_by<T: AnyBitPattern + NoUninit>(&self, way: Option<&Buffer>, offset: u64, count: usize) -> Result<Vec<T>> {
         let length = count.saturating_mul(size_of::<T>());
         self.check(offset, length)?;
         let mut data = vec![T::zeroed(); count];
@@ -760,22 +770,29 @@ impl Buffer {
             unsafe { std::ptr::copy_nonoverlapping(pointer.add(offset as usize), bytes.as_mut_ptr(), bytes.len()) };
             return Ok(data);
         }
-        self.read_staged(offset, bytes, STAGING_BYTES)?;
+        match way {
+            Some(way) => self.read_through(way, offset, bytes)?,
+            None => self.read_staged(offset, bytes, STAGING_BYTES)?,
+        }
         Ok(data)
     }
 
     fn read_staged(&self, offset: u64, bytes: &mut [u8], most: u64) -> Result<()> {
-        let context = self.context();
-        let piece = most.min(bytes.len() as u64);
-        let staging =
-            context.buffer(&BufferDesc { name: "read-back staging", size: piece, kind: BufferKind::Readback, dedicated: false })?;
+        let size = most.min(bytes.len() as u64);
+        let desc = BufferDesc { name: "read-back staging", size, kind: BufferKind::Readback, dedicated: false };
+        self.read_through(&self.context().buffer(&desc)?, offset, bytes)
+    }
+
+    /// Copies in pieces that the other buffer holds, which is the caller's alone.
+    fn read_through(&self, staging: &Buffer, offset: u64, bytes: &mut [u8]) -> Result<()> {
         let Some(pointer) = staging.mapped(false) else {
             return Err(Error::Allocator { name: staging.name.clone(), reason: "the host cannot see read-back memory".to_owned() });
         };
+        let context = self.context();
         let mut at = offset;
-        for chunk in bytes.chunks_mut(piece as usize) {
-            context.copy(self, at, &staging, 0, chunk.len() as u64)?;
-            // SAFETY: the staging buffer belongs to this call alone, maps `piece` bytes, and the device has finished.
+        for chunk in bytes.chunks_mut(staging.size as usize) {
+            context.copy(self, at, staging, 0, chunk.len() as u64)?;
+            // SAFETY: nobody else uses the staging buffer meanwhile, it maps all its bytes, and the device has finished.
             unsafe { std::ptr::copy_nonoverlapping(pointer, chunk.as_mut_ptr(), chunk.len()) };
             at += chunk.len() as u64;
         }

@@ -131,19 +131,36 @@ impl GridBuilder {
     /// [`Error::TooDense`] when not even a low density fits, or when a fixed resolution does not; [`Error::OutOfDeviceMemory`];
     /// [`Error::Gridwalk`] for settings without a meaning; those of [`Context::submit`].
     pub fn build(&self, scene: &GpuScene, settings: &BuildSettings) -> Result<Grid> {
+        self.build_beyond(scene, settings, None)
+    }
+
+    /// As [`GridBuilder::build`]; instead of memory of a capacity that was too small, with more than just enough, so that a scene that changes
+    /// soon finds room.
+    fn build_beyond(&self, scene: &GpuScene, settings: &BuildSettings, outgrown: Option<Outgrown>) -> Result<Grid> {
         let geometry = scene.geometry();
         let mut settings = *settings;
         let first_pairs = u64::from(geometry.triangle_count) * FIRST_PAIRS_EACH + 1024;
-        let mut pairs = first_pairs;
+        let mut pairs = outgrown.as_ref().and_then(|outgrown| outgrown.pairs).map_or(first_pairs, u64::from);
         let mut needed = u32::MAX;
+        let mut outgrown = outgrown;
         for attempts in 1..=MAX_ATTEMPTS {
+            let roomy = |needed: u64, most: u32, of: fn(&Capacity) -> u32| {
+                let room = outgrown.as_ref().map_or(needed, |outgrown| with_room(needed, of(&outgrown.capacity).into()));
+                u32::try_from(room).unwrap_or(u32::MAX).min(most)
+            };
+            let triangles = roomy(geometry.triangle_count.into(), gridwalk::MAX_TRIANGLES, |capacity| capacity.triangles);
             let capacity = Capacity {
-                triangles: geometry.triangle_count,
-                cells: cell_capacity(geometry.triangle_count, &settings)?,
-                pairs: u32::try_from(pairs).unwrap_or(u32::MAX).min(MAX_PAIRS),
+                triangles,
+                cells: cell_capacity(triangles, &settings)?,
+                pairs: roomy(pairs, MAX_PAIRS, |capacity| capacity.pairs),
             };
             let mut grid = match self.allocate(capacity, settings) {
                 Ok(grid) => grid,
+                // First without the room that nobody has asked for.
+                Err(Error::OutOfDeviceMemory { .. }) if outgrown.is_some() => {
+                    outgrown = None;
+                    continue;
+                }
                 // Fewer cells need fewer pairs: a coarser grid is better than none.
                 Err(Error::OutOfDeviceMemory { .. }) if settings.resolution.is_none() && settings.density > LEAST_DENSITY => {
                     settings.density /= 8.0;
@@ -204,6 +221,18 @@ impl GridBuilder {
     }
 }
 
+/// A capacity that was too small.
+struct Outgrown {
+    capacity: Capacity,
+    /// Pairs that a build has counted, where it was for them.
+    pairs: Option<u32>,
+}
+
+/// Where a capacity has turned out too small: a quarter more than is needed, and never less than there was.
+fn with_room(needed: u64, was: u64) -> u64 {
+    if needed <= was { was } else { needed.saturating_add(needed / 4) }
+}
+
 impl Engine {
     fn tracer(&self) -> Result<&Tracer> {
         self.tracer.as_ref().ok_or(Error::DeviceLost)
@@ -254,7 +283,8 @@ impl Grid {
         self.scratch = None;
     }
 
-    /// Builds again from nothing, in the same memory where it suffices: after the scene's vertices changed, or to measure.
+    /// Builds again from nothing, in the same memory where it suffices, else in memory with room to spare: after the scene's geometry
+    /// changed, or to measure.
     ///
     /// # Errors
     /// As [`GridBuilder::build`].
@@ -274,9 +304,12 @@ impl Grid {
             }
         }
         let settings = self.settings;
+        let overflowed = geometry.triangle_count <= self.capacity.triangles;
+        let pairs = self.stats.report.needed_pairs().filter(|&pairs| overflowed && pairs <= MAX_PAIRS);
+        let outgrown = Outgrown { capacity: self.capacity, pairs };
         // The old memory goes first: the new one may not fit beside it.
         self.scratch = None;
-        *self = builder.build(scene, &settings)?;
+        *self = builder.build_beyond(scene, &settings, Some(outgrown))?;
         Ok(())
     }
 

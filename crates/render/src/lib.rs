@@ -17,6 +17,7 @@ mod pipeline;
 mod player;
 mod push;
 mod queries;
+mod queues;
 mod scene;
 mod settings;
 mod wavefront;

@@ -4,19 +4,25 @@
 //! reach, compact, any hit, add; then compact what reflects into the next bounce's queue. Every step but the compaction is a map.
 
 use crate::{
-    Buffer, BufferDesc, BufferKind, Context, Error, Frame, FrameStats, GpuScene, Grid, Progress, RenderSettings, Result,
+    Buffer, Context, Error, Frame, FrameStats, GpuScene, Grid, Progress, RenderSettings, Result,
     camera::{camera_frame, sample_offset},
-    compact::{Compaction, CompactionInfo, sum_count},
+    compact::{Compaction, CompactionInfo},
     kernels,
-    layout::{CameraFrame, Film, FirstHitRecord, Path, QueueHeader, Surface},
+    layout::{CameraFrame, Film, FirstHitRecord, QueueHeader},
     picture::Picture,
     pipeline::{Pipeline, Recorder, Timer, map_groups},
     push,
+    queues::{QueueShape, Queues},
+    scene::update_buffer,
 };
 use ash::vk;
-use gridwalk::{Hit, Ray, RayCount, TraceInfo};
+use gridwalk::{RayCount, TraceInfo};
 use gridwalk_scene::Camera;
-use std::{ops::ControlFlow, time::Instant};
+use std::{
+    ops::ControlFlow,
+    sync::{Mutex, MutexGuard, PoisonError},
+    time::Instant,
+};
 
 /// Renders pictures on one device.
 pub struct Renderer {
@@ -31,6 +37,15 @@ pub struct Renderer {
     compaction: Compaction,
     masked_closest: Masked,
     masked_any: Masked,
+    /// Of the last picture: the next one is often like it.
+    kept: Mutex<Kept>,
+}
+
+/// What one picture leaves for the next.
+#[derive(Default)]
+struct Kept {
+    queues: Option<Queues>,
+    timer: Option<Timer>,
 }
 
 /// A walk with masks: its first dispatch, one that goes on, and the last, which reports what is still not done.
@@ -82,32 +97,13 @@ enum Step {
     Reflect { bounce: u32 },
 }
 
-/// All that one picture needs, for one batch of pixels.
+/// One picture as it is made, a batch of pixels at a time.
 struct Batch<'a> {
     renderer: &'a Renderer,
     scene: &'a GpuScene,
     grid: &'a Grid,
-    capacity: u32,
-    camera: Buffer,
-    /// A header for each bounce's queue and for each light's shadow rays from it.
-    headers: Buffer,
-    rays: [Buffer; 2],
-    paths: [Buffer; 2],
-    hits: Buffer,
-    surfaces: Buffer,
-    reflects: Buffer,
-    shadows: Buffer,
-    offsets: Buffer,
-    sums: Buffer,
-    shadow_rays: Buffer,
-    shadow_paths: Buffer,
-    occluded: Buffer,
-    film: Buffer,
-    unfinished: Buffer,
-    scratch: Buffer,
-    records: Option<Buffer>,
-    counters: Option<Buffer>,
-    bytes: u64,
+    queues: Queues,
+    camera: CameraFrame,
     depth: u32,
     shade_flags: u32,
 }
@@ -139,10 +135,28 @@ impl Renderer {
             compaction: Compaction::new(context)?,
             masked_closest: Masked::new(context, &kernels::MASKED_CLOSEST_HIT)?,
             masked_any: Masked::new(context, &kernels::MASKED_ANY_HIT)?,
+            kept: Mutex::default(),
         })
     }
 
-    /// Renders a scene through its grid. `progress` is called after every submission; when it breaks, the picture is given up.
+    /// Gives back the memory that it keeps between pictures.
+    pub fn free_queues(&self) {
+        *self.kept() = Kept::default();
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The queues of the last picture if they are of this shape, else new ones.
+    fn queues(&self, shape: QueueShape) -> Result<Queues> {
+        // The old ones go first: the new ones may not fit beside them.
+        let kept = self.kept().queues.take().filter(|queues| queues.shape == shape);
+        kept.map_or_else(|| Queues::new(&self.context, shape), Ok)
+    }
+
+    /// Renders a scene through its grid. `progress` is called after every submission; when it breaks, the picture is given up. The memory
+    /// of the queues is kept for the next picture, which takes it over when its settings are the same: see [`Renderer::free_queues`].
     ///
     /// The same scene, grid, camera and settings give the same picture, bit for bit, on the same device.
     ///
@@ -161,17 +175,19 @@ impl Renderer {
         let begin = Instant::now();
         let pixels = crop.width * crop.height;
         let capacity = pixels.min(settings.batch).min(self.context.rays_per_submission());
-        let batch = Batch::new(self, scene, grid, settings, capacity)?;
-        batch.camera.write(0, &[camera_frame(camera, settings, crop)?])?;
+        let batch = Batch::new(self, scene, grid, settings, capacity, camera_frame(camera, settings, crop)?)?;
+        let kept = self.kept().timer.take();
+        let mut timer = kept.map_or_else(|| Timer::new(&self.context), Ok)?;
+        // A picture that was given up has left its times.
+        timer.take();
 
-        let mut timer = Timer::new(&self.context)?;
-        let mut stats = FrameStats { queue_bytes: batch.bytes, ..FrameStats::default() };
+        let mut stats = FrameStats { queue_bytes: batch.queues.bytes, ..FrameStats::default() };
         let mut picture = Picture::new(crop, settings);
         let plan = batch.plan();
         // The middle of each pixel is traced for the layers, and is a sample of the beauty only where there is no other.
-        let layers_apart = batch.records.is_some() && settings.spp > 1;
+        let layers_apart = batch.queues.records.is_some() && settings.spp > 1;
         let submissions_each = plan.len() as u64 * u64::from(settings.spp) + u64::from(layers_apart);
-        let total = submissions_each * u64::from(pixels.div_ceil(batch.capacity));
+        let total = submissions_each * u64::from(pixels.div_ceil(capacity));
         let mut done = 0;
         let mut report = |stats: &mut FrameStats, done: &mut u64, rays: u64| {
             *done += 1;
@@ -184,7 +200,7 @@ impl Renderer {
         };
         let mut first = 0;
         while first < pixels {
-            let count = (pixels - first).min(batch.capacity);
+            let count = (pixels - first).min(capacity);
             let mut clear = true;
             if layers_apart {
                 let span = Span { first, count, offset: [0.5, 0.5] };
@@ -210,6 +226,7 @@ impl Renderer {
             first += count;
         }
         stats.steps = timer.take();
+        *self.kept() = Kept { queues: Some(batch.queues), timer: Some(timer) };
         let traces = ["closest_hit", "any_hit", "masked_closest_hit", "masked_any_hit"];
         stats.trace_ms = stats.steps.iter().filter(|step| traces.contains(&step.name)).map(|step| step.ms).sum();
         let read = Instant::now();
@@ -221,58 +238,34 @@ impl Renderer {
 }
 
 impl<'a> Batch<'a> {
-    fn new(renderer: &'a Renderer, scene: &'a GpuScene, grid: &'a Grid, settings: &RenderSettings, capacity: u32) -> Result<Batch<'a>> {
-        let context = &renderer.context;
-        let mut bytes = 0;
-        let mut buffer = |name, count: u32, size: usize| {
-            let desc = BufferDesc { name, size: u64::from(count) * size as u64, kind: BufferKind::Device, dedicated: false };
-            let buffer = context.buffer(&desc)?;
-            bytes += buffer.size();
-            Ok::<_, Error>(buffer)
-        };
+    fn new(
+        renderer: &'a Renderer,
+        scene: &'a GpuScene,
+        grid: &'a Grid,
+        settings: &RenderSettings,
+        capacity: u32,
+        camera: CameraFrame,
+    ) -> Result<Batch<'a>> {
         // Without a mirror no bounce has a ray.
         let depth = if scene.has_mirrors() { settings.depth } else { 0 };
-        let queues = (depth + 1).checked_mul(scene.light_count() + 1).filter(|&queues| queues <= 1 << 20).ok_or_else(|| {
+        let headers = (depth + 1).checked_mul(scene.light_count() + 1).filter(|&headers| headers <= 1 << 20).ok_or_else(|| {
             Error::Setting { setting: "depth", value: settings.depth.to_string(), expected: "fewer reflections for so many lights" }
         })?;
-        let wants_layers = !settings.aovs.is_empty();
-        let wants_counts = settings.aovs.iter().any(|aov| aov.is_count());
-        let scratch = u32::try_from(grid.tracer()?.trace_scratch_size(capacity)?.size).unwrap_or(u32::MAX);
-        let mut batch = Batch {
-            renderer,
-            scene,
-            grid,
+        let queues = renderer.queues(QueueShape {
             capacity,
-            camera: buffer("camera", 1, size_of::<CameraFrame>())?,
-            headers: buffer("queue headers", queues, size_of::<QueueHeader>())?,
-            rays: [buffer("ray queue 0", capacity, size_of::<Ray>())?, buffer("ray queue 1", capacity, size_of::<Ray>())?],
-            paths: [buffer("path queue 0", capacity, size_of::<Path>())?, buffer("path queue 1", capacity, size_of::<Path>())?],
-            hits: buffer("hits", capacity, size_of::<Hit>())?,
-            surfaces: buffer("surfaces", capacity, size_of::<Surface>())?,
-            reflects: buffer("reflection flags", capacity, 4)?,
-            shadows: buffer("shadow flags", capacity, 4)?,
-            offsets: buffer("queue offsets", capacity, 4)?,
-            sums: buffer("flag sums", sum_count(capacity), 4)?,
-            shadow_rays: buffer("shadow ray queue", capacity, size_of::<Ray>())?,
-            shadow_paths: buffer("shadow path queue", capacity, size_of::<Path>())?,
-            occluded: buffer("occluded", capacity, 4)?,
-            film: buffer("film", capacity, size_of::<Film>())?,
-            unfinished: buffer("unfinished", capacity, 4)?,
-            scratch: buffer("trace scratch", scratch, 1)?,
-            records: if wants_layers { Some(buffer("first hits", capacity, size_of::<FirstHitRecord>())?) } else { None },
-            counters: if wants_counts { Some(buffer("walk counters", capacity, 16)?) } else { None },
-            bytes: 0,
-            depth,
-            shade_flags: if settings.transparent { SHADE_TRANSPARENT } else { 0 },
-        };
-        batch.bytes = bytes;
-        Ok(batch)
+            headers,
+            has_layers: !settings.aovs.is_empty(),
+            has_counts: settings.aovs.iter().any(|aov| aov.is_count()),
+            scratch: grid.tracer()?.trace_scratch_size(capacity)?.size,
+        })?;
+        let shade_flags = if settings.transparent { SHADE_TRANSPARENT } else { 0 };
+        Ok(Batch { renderer, scene, grid, queues, camera, depth, shade_flags })
     }
 
     /// The steps of a sample, cut into submissions.
     fn plan(&self) -> Vec<Vec<Step>> {
         let mut steps = vec![Step::Camera];
-        if self.records.is_some() {
+        if self.queues.records.is_some() {
             steps.push(Step::FirstHit);
         }
         for bounce in 0..=self.depth {
@@ -306,7 +299,7 @@ impl<'a> Batch<'a> {
     }
 
     fn header(&self, bounce: u32, light: Option<u32>) -> u64 {
-        self.headers.address() + self.header_offset(bounce, light)
+        self.queues.headers.address() + self.header_offset(bounce, light)
     }
 
     fn submit(&self, timer: &mut Timer, span: Span, clear: bool, steps: &[Step]) -> Result<()> {
@@ -315,7 +308,7 @@ impl<'a> Batch<'a> {
             let mut recorder = Recorder::new(context, cmd, timer);
             if clear {
                 recorder.step("clear", "copy", |cmd| {
-                    for buffer in [&self.film, &self.unfinished] {
+                    for buffer in [&self.queues.film, &self.queues.unfinished] {
                         // SAFETY: the command buffer is recording; the buffer lives and its size is a multiple of 4.
                         unsafe { context.device().cmd_fill_buffer(cmd, buffer.raw(), 0, vk::WHOLE_SIZE, 0) };
                     }
@@ -339,30 +332,28 @@ impl<'a> Batch<'a> {
                 let [groups_x, groups_y, groups_z] = map_groups(span.count);
                 let header = QueueHeader { count: span.count, groups_x, groups_y, groups_z };
                 recorder.step("start", "copy", |cmd| {
-                    // SAFETY: the command buffer is recording; the buffer holds a header at its beginning, of a size that is a multiple of 4.
-                    unsafe {
-                        let bytes = bytemuck::bytes_of(&header);
-                        renderer.context.device().cmd_update_buffer(cmd, self.headers.raw(), 0, bytes);
-                    }
+                    let device = renderer.context.device();
+                    update_buffer(device, cmd, &self.queues.headers, 0, bytemuck::bytes_of(&header));
+                    update_buffer(device, cmd, &self.queues.camera, 0, bytemuck::bytes_of(&self.camera));
                 });
                 let push = push::CameraRays {
-                    camera: self.camera.address(),
-                    rays: self.rays[0].address(),
-                    paths: self.paths[0].address(),
+                    camera: self.queues.camera.address(),
+                    rays: self.queues.rays[0].address(),
+                    paths: self.queues.paths[0].address(),
                     first_pixel: span.first,
                     pixel_count: span.count,
                     sample_offset: span.offset,
                 };
                 recorder.dispatch(&renderer.camera_rays, &push, map_groups(span.count));
-                self.closest_hit(recorder, 0, self.counters.as_ref())?;
+                self.closest_hit(recorder, 0, self.queues.counters.as_ref())?;
             }
             Step::FirstHit => {
-                if let Some(records) = &self.records {
+                if let Some(records) = &self.queues.records {
                     let push = push::FirstHit {
                         scene,
                         queue: self.header(0, None),
-                        rays: self.rays[0].address(),
-                        hits: self.hits.address(),
+                        rays: self.queues.rays[0].address(),
+                        hits: self.queues.hits.address(),
                         records: records.address(),
                     };
                     recorder.dispatch(&renderer.first_hit, &push, map_groups(span.count));
@@ -379,13 +370,13 @@ impl<'a> Batch<'a> {
                 let push = push::Shade {
                     scene,
                     queue: self.header(bounce, None),
-                    rays: self.rays[here(bounce)].address(),
-                    hits: self.hits.address(),
-                    paths: self.paths[here(bounce)].address(),
-                    film: self.film.address(),
-                    surfaces: self.surfaces.address(),
-                    reflects: self.reflects.address(),
-                    unfinished: self.unfinished.address(),
+                    rays: self.queues.rays[here(bounce)].address(),
+                    hits: self.queues.hits.address(),
+                    paths: self.queues.paths[here(bounce)].address(),
+                    film: self.queues.film.address(),
+                    surfaces: self.queues.surfaces.address(),
+                    reflects: self.queues.reflects.address(),
+                    unfinished: self.queues.unfinished.address(),
                     flags,
                     padding: 0,
                 };
@@ -395,21 +386,21 @@ impl<'a> Batch<'a> {
                 let queue = self.header(bounce, None);
                 let walk = self.header_offset(bounce, None);
                 let shadow_queue = self.header(bounce, Some(light));
-                let rays = self.rays[here(bounce)].address();
-                let surfaces = self.surfaces.address();
-                let push = push::LightCount { scene, queue, rays, surfaces, shadows: self.shadows.address(), light, padding: 0 };
+                let rays = self.queues.rays[here(bounce)].address();
+                let surfaces = self.queues.surfaces.address();
+                let push = push::LightCount { scene, queue, rays, surfaces, shadows: self.queues.shadows.address(), light, padding: 0 };
                 self.map(recorder, &renderer.light_count, &push, walk);
-                self.compact(recorder, queue, &self.shadows, shadow_queue);
+                self.compact(recorder, queue, &self.queues.shadows, shadow_queue);
                 let push = push::LightEmit {
                     scene,
                     queue,
                     rays,
                     surfaces,
-                    paths: self.paths[here(bounce)].address(),
-                    shadows: self.shadows.address(),
-                    offsets: self.offsets.address(),
-                    shadow_rays: self.shadow_rays.address(),
-                    shadow_paths: self.shadow_paths.address(),
+                    paths: self.queues.paths[here(bounce)].address(),
+                    shadows: self.queues.shadows.address(),
+                    offsets: self.queues.offsets.address(),
+                    shadow_rays: self.queues.shadow_rays.address(),
+                    shadow_paths: self.queues.shadow_paths.address(),
                     light,
                     padding: 0,
                 };
@@ -417,25 +408,25 @@ impl<'a> Batch<'a> {
                 self.any_hit(recorder, bounce, light)?;
                 let push = push::LightAdd {
                     queue: shadow_queue,
-                    paths: self.shadow_paths.address(),
-                    occluded: self.occluded.address(),
-                    film: self.film.address(),
-                    unfinished: self.unfinished.address(),
+                    paths: self.queues.shadow_paths.address(),
+                    occluded: self.queues.occluded.address(),
+                    film: self.queues.film.address(),
+                    unfinished: self.queues.unfinished.address(),
                 };
                 self.map(recorder, &renderer.light_add, &push, self.header_offset(bounce, Some(light)));
             }
             Step::Reflect { bounce } => {
                 let queue = self.header(bounce, None);
-                self.compact(recorder, queue, &self.reflects, self.header(bounce + 1, None));
+                self.compact(recorder, queue, &self.queues.reflects, self.header(bounce + 1, None));
                 let push = push::ReflectEmit {
                     queue,
-                    rays: self.rays[here(bounce)].address(),
-                    surfaces: self.surfaces.address(),
-                    paths: self.paths[here(bounce)].address(),
-                    reflects: self.reflects.address(),
-                    offsets: self.offsets.address(),
-                    next_rays: self.rays[here(bounce + 1)].address(),
-                    next_paths: self.paths[here(bounce + 1)].address(),
+                    rays: self.queues.rays[here(bounce)].address(),
+                    surfaces: self.queues.surfaces.address(),
+                    paths: self.queues.paths[here(bounce)].address(),
+                    reflects: self.queues.reflects.address(),
+                    offsets: self.queues.offsets.address(),
+                    next_rays: self.queues.rays[here(bounce + 1)].address(),
+                    next_paths: self.queues.paths[here(bounce + 1)].address(),
                 };
                 self.map(recorder, &renderer.reflect_emit, &push, self.header_offset(bounce, None));
                 self.closest_hit(recorder, bounce + 1, None)?;
@@ -447,34 +438,35 @@ impl<'a> Batch<'a> {
     /// Launches a map kernel over a queue whose length the device knows.
     fn map<P: bytemuck::Pod>(&self, recorder: &mut Recorder<'_>, pipeline: &Pipeline, push: &P, header: u64) {
         let arguments = header + std::mem::offset_of!(QueueHeader, groups_x) as u64;
-        recorder.dispatch_indirect(pipeline, push, self.headers.raw(), arguments);
+        recorder.dispatch_indirect(pipeline, push, self.queues.headers.raw(), arguments);
     }
 
     /// Places of the set flags, and the header of the queue that they make.
     fn compact(&self, recorder: &mut Recorder<'_>, queue: u64, flags: &Buffer, next: u64) {
         let info = CompactionInfo {
-            capacity: self.capacity,
+            capacity: self.queues.shape.capacity,
             queue,
             flags: flags.address(),
-            sums: self.sums.address(),
-            offsets: self.offsets.address(),
+            sums: self.queues.sums.address(),
+            offsets: self.queues.offsets.address(),
             next,
         };
         self.renderer.compaction.record(recorder, &info);
     }
 
     fn trace_info(&self, rays: &Buffer, hits: &Buffer, header: u64) -> TraceInfo {
-        let count = RayCount::Indirect { count: self.headers.region().part(header, 4), max: self.capacity };
-        TraceInfo::new(rays.region(), hits.region(), count, self.scratch.region())
+        let queues = &self.queues;
+        let count = RayCount::Indirect { count: queues.headers.region().part(header, 4), max: queues.shape.capacity };
+        TraceInfo::new(rays.region(), hits.region(), count, queues.scratch.region())
     }
 
     fn closest_hit(&self, recorder: &mut Recorder<'_>, bounce: u32, counters: Option<&Buffer>) -> Result<()> {
-        let rays = &self.rays[(bounce % 2) as usize];
+        let rays = &self.queues.rays[(bounce % 2) as usize];
         let header = self.header_offset(bounce, None);
         // Only the library's walk counts: with masks it runs for its counts alone.
         if counters.is_some() || !self.scene.has_masks() {
             let tracer = self.grid.tracer()?;
-            let info = TraceInfo { counters: counters.map(Buffer::region), ..self.trace_info(rays, &self.hits, header) };
+            let info = TraceInfo { counters: counters.map(Buffer::region), ..self.trace_info(rays, &self.queues.hits, header) };
             recorder.step("closest_hit", "map", |cmd| {
                 // SAFETY: the command buffer is recording on the tracer's device; all regions are whole living buffers of that device with
                 // room for `capacity` rays; barriers stand before and behind every step; the grid's build was waited for.
@@ -485,10 +477,10 @@ impl<'a> Batch<'a> {
             let push = push::MaskedClosestHit {
                 grid: self.grid.address(),
                 scene: self.scene.table(),
-                queue: self.headers.address() + header,
+                queue: self.queues.headers.address() + header,
                 rays: rays.address(),
-                hits: self.hits.address(),
-                walks: self.scratch.address(),
+                hits: self.queues.hits.address(),
+                walks: self.queues.scratch.address(),
             };
             for pipeline in self.renderer.masked_closest.variants() {
                 self.map(recorder, pipeline, &push, header);
@@ -503,10 +495,10 @@ impl<'a> Batch<'a> {
             let push = push::MaskedAnyHit {
                 grid: self.grid.address(),
                 scene: self.scene.table(),
-                queue: self.headers.address() + header,
-                rays: self.shadow_rays.address(),
-                occluded: self.occluded.address(),
-                walks: self.scratch.address(),
+                queue: self.queues.headers.address() + header,
+                rays: self.queues.shadow_rays.address(),
+                occluded: self.queues.occluded.address(),
+                walks: self.queues.scratch.address(),
             };
             for pipeline in self.renderer.masked_any.variants() {
                 self.map(recorder, pipeline, &push, header);
@@ -514,7 +506,7 @@ impl<'a> Batch<'a> {
             return Ok(());
         }
         let tracer = self.grid.tracer()?;
-        let info = self.trace_info(&self.shadow_rays, &self.occluded, header);
+        let info = self.trace_info(&self.queues.shadow_rays, &self.queues.occluded, header);
         recorder.step("any_hit", "map", |cmd| {
             // SAFETY: as in `closest_hit`.
             unsafe { tracer.cmd_any_hit(cmd, self.grid.address(), &info) }
@@ -525,7 +517,7 @@ impl<'a> Batch<'a> {
     /// Adds the lengths of a sample's queues.
     fn count_rays(&self, stats: &mut FrameStats) -> Result<()> {
         let lights = self.scene.light_count() as usize;
-        let headers = self.headers.read::<QueueHeader>(0, (self.depth as usize + 1) * (lights + 1))?;
+        let headers = self.queues.fetch::<QueueHeader>(&self.queues.headers, (self.depth as usize + 1) * (lights + 1))?;
         for (bounce, queues) in headers.chunks_exact(lights + 1).enumerate() {
             let count = u64::from(queues[0].count);
             if bounce == 0 {
@@ -539,14 +531,14 @@ impl<'a> Batch<'a> {
     }
 
     fn read(&self, picture: &mut Picture, first: u32, count: u32, stats: &mut FrameStats) -> Result<()> {
-        let film = self.film.read::<Film>(0, count as usize)?;
-        let unfinished = self.unfinished.read::<u32>(0, count as usize)?;
+        let film = self.queues.fetch::<Film>(&self.queues.film, count as usize)?;
+        let unfinished = self.queues.fetch::<u32>(&self.queues.unfinished, count as usize)?;
         stats.rays.unfinished += unfinished.iter().map(|&rays| u64::from(rays)).sum::<u64>();
         picture.add_film(first, &film);
-        if let Some(records) = &self.records {
-            let records = records.read::<FirstHitRecord>(0, count as usize)?;
-            let counters = match &self.counters {
-                Some(counters) => counters.read::<[u32; 4]>(0, count as usize)?,
+        if let Some(records) = &self.queues.records {
+            let records = self.queues.fetch::<FirstHitRecord>(records, count as usize)?;
+            let counters = match &self.queues.counters {
+                Some(counters) => self.queues.fetch::<[u32; 4]>(counters, count as usize)?,
                 None => Vec::new(),
             };
             picture.add_records(first, &records, &counters);

@@ -1,0 +1,106 @@
+//! Every frame of a run is the frame rendered alone, and at its key-frames it is the key-frame.
+
+use gridwalk_scene::generate;
+
+use super::*;
+
+/// Ten key-frames a second of a sphere that wobbles beside a box and a mirror that stand still.
+fn wobbling(count: u32) -> tempfile::TempDir {
+    let keys: Vec<Mesh> = (0..count)
+        .map(|key| {
+            let mut mesh = generate::sphere([0.0, 0.3, 0.0], 0.8, 12);
+            let phase = key as f32 * 0.9;
+            for p in &mut mesh.positions {
+                *p = [p[0] + 0.3 * (phase + 2.0 * p[1]).sin(), p[1] * (1.0 + 0.2 * phase.cos()), p[2]];
+            }
+            mesh
+        })
+        .collect();
+    sequence(
+        &keys,
+        "ambient = 0.2\n[[material]]\nname = \"steel\"\ndiffuse = 0.1\nspecular = 0.8\nmirror = true\n\
+         [[mesh]]\nsequence = \"key.%04d.obj\"\nfps = 10\nloop = true\n\
+         [[mesh]]\nshape = \"box\"\nscale = 0.5\ntranslate = [1.4, 0, 0]\n\
+         [[mesh]]\nshape = \"plane\"\nscale = 4\ntranslate = [0, -1, 0]\nmaterial = \"steel\"\n",
+    )
+}
+
+#[test]
+fn each_frame_of_a_run_is_the_frame_rendered_alone() {
+    let folder = wobbling(5);
+    let mut run = play(folder.path());
+    let times: Vec<f64> = (0..12).map(|frame| f64::from(frame) / 24.0).collect();
+    let mut pictures = Vec::new();
+    for (frame, &time) in times.iter().enumerate() {
+        let stats = seek(&mut run, time, &times[frame + 1..]);
+        assert!(stats.rebuilt, "frame {frame}");
+        pictures.push(shoot_player(&run));
+    }
+    for (frame, &time) in times.iter().enumerate().rev().step_by(3) {
+        let mut alone = play(folder.path());
+        seek(&mut alone, time, &[]);
+        assert_same_picture(&format!("frame {frame}"), &pictures[frame], &shoot_player(&alone));
+    }
+    // Backwards and at random, by the same player.
+    for frame in [11, 3, 7, 0, 1, 10, 10, 2] {
+        let stats = seek(&mut run, times[frame], &[times[(frame * 5) % 12], times[(frame * 7) % 12]]);
+        assert_eq!(stats.grown, 0, "frame {frame}");
+        assert_same_picture(&format!("frame {frame} again"), &pictures[frame], &shoot_player(&run));
+    }
+    // Negative control.
+    assert!(differ(&pictures[3], &pictures[4]));
+}
+
+#[test]
+fn at_its_key_frames_it_is_the_key_frame() {
+    let folder = wobbling(4);
+    let mut run = play(folder.path());
+    let moving = animation(folder.path());
+    let mut reader = moving.reader().unwrap();
+    for key in [0, 3, 1, 2] {
+        seek(&mut run, f64::from(key) / 10.0, &[]);
+        let mut scene = moving.scene.clone();
+        scene.meshes[0] = reader.read(0, key).unwrap().mesh;
+        assert_same_picture(&format!("key-frame {key}"), &shoot_player(&run), &shoot_still(&scene));
+        let positions = run.scene().read_positions().unwrap();
+        let count = scene.meshes[0].positions.len();
+        assert_eq!(positions[..count], scene.meshes[0].positions[..]);
+    }
+}
+
+/// Halfway, vertices lie on the straight line; what is the same in both stays exactly where it is.
+#[test]
+fn between_key_frames_vertices_go_straight() {
+    let a = generate::sphere([0.0; 3], 1.0, 10);
+    let mut b = a.clone();
+    for p in b.positions.iter_mut().skip(20) {
+        p[1] += 2.0;
+    }
+    let folder = sequence(&[a, b], "[[mesh]]\nsequence = \"key.%04d.obj\"\nfps = 1\n");
+    let mut run = play(folder.path());
+    let mut reader = run.animation().reader().unwrap();
+    let [a, b] = [0, 1].map(|key| reader.read(0, key).unwrap().mesh);
+    assert!(a.positions.iter().zip(&b.positions).filter(|(a, b)| a == b).count() > 0);
+    for weight in [0.0_f32, 0.25, 0.5, 0.8125, 1.0] {
+        seek(&mut run, f64::from(weight), &[]);
+        let found = run.scene().read_positions().unwrap();
+        for (i, position) in found.iter().enumerate().take(a.positions.len()) {
+            let expected = [0, 1, 2].map(|axis| a.positions[i][axis] + (b.positions[i][axis] - a.positions[i][axis]) * weight);
+            assert_eq!(*position, expected, "vertex {i} at {weight}");
+        }
+    }
+}
+
+#[test]
+fn what_stands_still_is_built_once() {
+    let folder = wobbling(3);
+    let mut run = play(folder.path());
+    assert!(seek(&mut run, 0.1, &[]).rebuilt);
+    let again = seek(&mut run, 0.1, &[0.2]);
+    assert!(!again.rebuilt && again.key_frames == 0 && again.deform_ms == 0.0, "{again:?}");
+    let next = seek(&mut run, 0.2, &[]);
+    assert!(next.rebuilt && next.key_frames == 1 && next.read_ms + next.parse_ms > 0.0, "{next:?}");
+    let mut still = player(Animation::still(animation(folder.path()).scene));
+    let stats = seek(&mut still, 7.0, &[8.0]);
+    assert!(!stats.rebuilt && stats.build.report.triangles > 0, "{stats:?}");
+}
