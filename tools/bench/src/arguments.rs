@@ -25,6 +25,10 @@ pub struct Arguments {
     #[arg(long, value_name = "OLD.json")]
     pub compare: Option<PathBuf>,
 
+    /// Also draw the ratios as bars, into an SVG file
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+
     /// What every measurement needs
     #[command(flatten)]
     pub common: Common,

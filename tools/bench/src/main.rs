@@ -11,6 +11,7 @@ mod embree;
 mod growth;
 mod measure;
 mod moving;
+mod plot;
 mod rays;
 mod report;
 mod scenes;
@@ -73,6 +74,10 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
             let mut table = report.table(arguments.filter_steps.as_deref());
             if let Some(old) = &old {
                 table += &compare::changes(old, &report);
+            }
+            if let Some(path) = &arguments.plot {
+                let picture = plot::svg(&report).context("nothing to plot: Embree is not there")?;
+                std::fs::write(path, picture).with_context(|| format!("{}: cannot be written", path.display()))?;
             }
             write(common, &report, &table)?;
         }
@@ -206,6 +211,10 @@ mod tests {
             let table = report.table(None);
             assert!(table.contains("rebuild") && table.contains("sort_scatter"), "{table}");
             assert!(!report.table(Some("sort_")).contains("overlap_count"));
+            if let Some(picture) = plot::svg(&report) {
+                assert_eq!(picture.matches("<rect x").count(), 6 * report.scenes.len(), "{picture}");
+            }
+            assert_eq!(plot::svg(&report).is_some(), has_rival);
             let changes = compare::changes(&report, &report);
             assert!(changes.contains("within the noise") && !changes.contains("slower"), "{changes}");
             let again: Report = serde_json::from_str(&serde_json::to_string(&report).unwrap()).unwrap();
