@@ -91,7 +91,7 @@ impl Session {
         let info = self.context.device_info();
         let grid = self.player.grid();
         let stats = grid.stats();
-        let parts = grid.tracer().map(|tracer| tracer.memory_parts(grid.capacity()).to_vec()).unwrap_or_default();
+        let parts = grid.tracer().map(|tracer| tracer.memory_parts(grid.capacity())).unwrap_or_default();
         Run {
             header: Header::new(command),
             scene: source.name(),

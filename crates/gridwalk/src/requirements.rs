@@ -3,6 +3,8 @@
 use ash::vk;
 
 /// What a physical device offers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Found {
     /// All that is missing, in words; empty if the device can serve.
     pub missing: Vec<String>,
@@ -27,7 +29,8 @@ pub fn features() -> Features {
 }
 
 /// The structures of [`features`].
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Features {
     /// `bufferDeviceAddress`.
     pub vulkan_12: vk::PhysicalDeviceVulkan12Features<'static>,

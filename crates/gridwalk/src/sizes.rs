@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::shape::Shape;
 
 /// What a build must have room for. Sizes are made from capacities once; builds of any smaller size fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Capacity {
     /// Triangles, at most 2^26.
     pub triangles: u32,
@@ -33,6 +33,7 @@ pub const REGION_ALIGNMENT: u64 = 64;
 
 /// What a region needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RegionSize {
     /// Bytes.
     pub size: u64,
@@ -44,6 +45,7 @@ pub struct RegionSize {
 
 /// What the regions of a build need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct BuildSizes {
     /// The grid itself, triangles included: needed as long as rays are traced.
     pub grid: RegionSize,

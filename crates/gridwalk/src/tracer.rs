@@ -31,8 +31,15 @@ pub struct DeviceDesc<'a> {
     pub debug_utils: Option<&'a ash::ext::debug_utils::Device>,
 }
 
+impl<'a> DeviceDesc<'a> {
+    /// No cache, no labels, and kernels cut as suits the kind of device.
+    pub fn new(instance: &'a ash::Instance, physical_device: vk::PhysicalDevice, device: &'a ash::Device) -> DeviceDesc<'a> {
+        DeviceDesc { instance, physical_device, device, pipeline_cache: vk::PipelineCache::null(), shape: None, debug_utils: None }
+    }
+}
+
 /// A piece of a buffer of the caller's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Region {
     /// The buffer, with usage `SHADER_DEVICE_ADDRESS`.
     pub buffer: vk::Buffer,
@@ -55,7 +62,7 @@ impl Region {
 }
 
 /// Indexed triangles in device memory.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Geometry {
     /// Three `f32` a vertex, tightly packed.
     pub positions: Region,
@@ -83,6 +90,7 @@ impl From<Geometry> for Input {
 
 /// Which cells list a triangle (thesis Figure 3.2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Overlap {
     /// All that its box overlaps: the faster build, by less than a tenth.
     Box,
@@ -141,8 +149,17 @@ pub struct BuildInfo {
     pub timestamps: Option<Timestamps>,
 }
 
+impl BuildInfo {
+    /// A build with the options that stand for themselves. What is set beside is best put around it, since fields may be added:
+    /// `BuildInfo { options, ..BuildInfo::new(input, grid, scratch, report, capacity) }`.
+    pub fn new(input: impl Into<Input>, grid: Region, scratch: Region, report: Region, capacity: Capacity) -> BuildInfo {
+        BuildInfo { input: input.into(), grid, scratch, report, capacity, options: BuildOptions::default(), timestamps: None }
+    }
+}
+
 /// How many rays there are.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum RayCount {
     /// As many.
     Direct(u32),
@@ -349,8 +366,8 @@ impl Tracer {
     }
 
     /// Name and bytes of every part of a build's grid and scratch regions: where the memory goes.
-    pub fn memory_parts(&self, capacity: &Capacity) -> [(&'static str, u64); 18] {
-        sizes::parts(capacity, &self.shape)
+    pub fn memory_parts(&self, capacity: &Capacity) -> Vec<(&'static str, u64)> {
+        sizes::parts(capacity, &self.shape).to_vec()
     }
 
     /// What the scratch region of a trace needs.
