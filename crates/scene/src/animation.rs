@@ -5,8 +5,10 @@
 
 use std::sync::Arc;
 
+use crate::curve::Curve;
 use crate::gltf::Rig;
 use crate::key_reader::KeyReader;
+use crate::moving::{CameraCurve, LightCurve, PlacedCurve, Turntable};
 use crate::sequence::Sequence;
 use crate::transform::Edit;
 use crate::vector::normalised;
@@ -66,6 +68,7 @@ pub(crate) enum MeshTrack {
     Still,
     Keys(KeyTrack),
     Rig(RigTrack),
+    Placed(PlacedCurve),
 }
 
 /// How a camera moves.
@@ -74,6 +77,9 @@ pub(crate) enum CameraTrack {
     #[default]
     Still,
     Rig(RigTrack),
+    Keys(CameraCurve),
+    /// The scene's camera is where it begins.
+    Turntable(Turntable),
 }
 
 /// How a light moves.
@@ -82,6 +88,7 @@ pub(crate) enum LightTrack {
     #[default]
     Still,
     Rig(RigTrack),
+    Keys(LightCurve),
 }
 
 /// A mesh's course through a sequence of files.
@@ -115,6 +122,13 @@ pub(crate) struct Course {
     pub(crate) looped: bool,
     /// What its file was made for, if it says so.
     pub(crate) fps: Option<f64>,
+}
+
+impl Course {
+    /// That of a scene file's keys.
+    pub(crate) fn of<const N: usize>(curve: &Curve<N>) -> Self {
+        Self { seconds: curve.seconds(), looped: curve.looped(), fps: None }
+    }
 }
 
 /// How far from a key-frame, as a part of the way to the next one, a time still counts as the key-frame's: far above what is lost by
@@ -269,13 +283,16 @@ impl Animation {
 
     /// Sets duration, rate and whether the end goes over into the beginning, from all that moves. What is given goes before it.
     pub(crate) fn set_course(&mut self, courses: &[Course], seconds: Option<f64>, fps: Option<f64>) {
+        // What has one key does not move.
+        let courses: Vec<&Course> = courses.iter().filter(|course| course.seconds > 0.0).collect();
         let longest = courses.iter().fold(0.0_f64, |longest, course| longest.max(course.seconds));
         self.duration = seconds.unwrap_or(longest);
         let fastest = courses.iter().filter_map(|course| course.fps).reduce(f64::max);
         self.fps = fps.or(fastest).unwrap_or(DEFAULT_FPS);
-        let times = |course: &Course| self.duration / course.seconds;
+        let whole = |times: f64| times > 0.5 && (times - times.round()).abs() < SNAP;
         self.cyclic = self.duration > 0.0
-            && courses.iter().all(|course| course.looped && times(course) > 0.5 && (times(course) - times(course).round()).abs() < SNAP);
+            && !courses.is_empty()
+            && courses.iter().all(|course| course.looped && whole(self.duration / course.seconds));
     }
 
     /// Frames from the beginning to the end at a rate; 1 or more.
@@ -307,6 +324,7 @@ impl Animation {
     pub fn pose(&self, mesh: usize, time: f64, pose: &mut Pose) {
         match self.tracks.meshes.get(mesh) {
             Some(MeshTrack::Rig(track)) => track.rig.pose(track.number, time, pose),
+            Some(MeshTrack::Placed(curve)) => curve.pose(time, pose),
             _ => {
                 pose.matrices.clear();
                 pose.weights.clear();
@@ -319,6 +337,8 @@ impl Animation {
         let number = self.scene.camera_number(name);
         match number.and_then(|number| self.tracks.cameras.get(number)) {
             Some(CameraTrack::Rig(track)) => track.rig.camera(track.number, time),
+            Some(CameraTrack::Keys(curve)) => Some(curve.at(time)),
+            Some(CameraTrack::Turntable(turntable)) => self.scene.camera(name).map(|camera| turntable.at(&camera, time)),
             Some(CameraTrack::Still) | None => self.scene.camera(name),
         }
     }
@@ -327,6 +347,7 @@ impl Animation {
     pub fn lights(&self, time: f64) -> Vec<Light> {
         let light = |(number, light): (usize, &Light)| match self.tracks.lights.get(number) {
             Some(LightTrack::Rig(track)) => track.rig.light(track.number, time).unwrap_or(*light),
+            Some(LightTrack::Keys(curve)) => curve.at(light, time),
             Some(LightTrack::Still) | None => *light,
         };
         self.scene.lights.iter().enumerate().map(light).collect()

@@ -9,11 +9,13 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use toml::Spanned;
 
-use crate::animation::{Course, KeyTrack, MeshTrack, Tracks};
+use crate::animation::{CameraTrack, Course, KeyTrack, LightTrack, MeshTrack, Tracks};
 use crate::assets::Assets;
+use crate::curve::{Curve, Interpolation};
 use crate::files::read_file;
 use crate::key_reader::{Cache, KeyReader, first_mesh};
 use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, folder_of};
+use crate::moving::{CAMERA_BOUNDED, CameraCurve, LIGHT_BOUNDED, LightCurve, PLACED_BOUNDED, PlacedCurve, Turntable, camera_values};
 use crate::sequence::{Pattern, Range as NumberRange, Sequence};
 use crate::suggest::closest;
 use crate::texture::{Use, srgb_to_linear};
@@ -106,6 +108,7 @@ impl<'de> Deserialize<'de> for Colour {
 #[serde(deny_unknown_fields)]
 struct Description {
     up: Option<Spanned<Vec3>>,
+    animation: Option<AnimationEntry>,
     ambient: Option<Colour>,
     render: Option<RenderEntry>,
     background: Option<Spanned<BackgroundEntry>>,
@@ -133,6 +136,13 @@ struct RenderEntry {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct AnimationEntry {
+    duration: Option<Spanned<Real>>,
+    fps: Option<Spanned<Real>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct BackgroundEntry {
     colour: Option<Colour>,
     bottom: Option<Colour>,
@@ -142,7 +152,7 @@ struct BackgroundEntry {
     rotation: Option<Number>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CameraEntry {
     name: Spanned<String>,
@@ -154,9 +164,27 @@ struct CameraEntry {
     azimuth: Option<Number>,
     elevation: Option<Number>,
     zoom: Option<Spanned<Number>>,
+    turntable: Option<Spanned<Real>>,
+    interpolation: Option<Spanned<String>>,
+    #[serde(rename = "loop")]
+    looped: Option<bool>,
+    #[serde(default)]
+    key: Vec<Spanned<CameraKeyEntry>>,
 }
 
-#[derive(Deserialize)]
+/// What a key does not give is as in the key before it, and in the first one as in the camera itself; so for lights and meshes.
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraKeyEntry {
+    time: Real,
+    eye: Option<Vec3>,
+    target: Option<Vec3>,
+    up: Option<Vec3>,
+    fov: Option<Spanned<Number>>,
+    orthographic_height: Option<Spanned<Number>>,
+}
+
+#[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LightEntry {
     kind: Spanned<String>,
@@ -167,6 +195,22 @@ struct LightEntry {
     irradiance: Option<Colour>,
     inner: Option<Number>,
     outer: Option<Spanned<Number>>,
+    interpolation: Option<Spanned<String>>,
+    #[serde(rename = "loop")]
+    looped: Option<bool>,
+    #[serde(default)]
+    key: Vec<Spanned<LightKeyEntry>>,
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LightKeyEntry {
+    time: Real,
+    position: Option<Vec3>,
+    direction: Option<Spanned<Vec3>>,
+    target: Option<Spanned<Vec3>>,
+    intensity: Option<Colour>,
+    irradiance: Option<Colour>,
 }
 
 #[derive(Deserialize)]
@@ -217,6 +261,18 @@ struct MeshEntry {
     seed: Option<u32>,
     corners: Option<[Vec3; 4]>,
     uv_scale: Option<Number>,
+    interpolation: Option<Spanned<String>>,
+    #[serde(default)]
+    key: Vec<Spanned<MeshKeyEntry>>,
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeshKeyEntry {
+    time: Real,
+    translate: Option<Vec3>,
+    rotate: Option<Vec3>,
+    scale: Option<Spanned<Scale>>,
 }
 
 /// A pattern, or the names of all files.
@@ -309,7 +365,7 @@ pub(crate) fn open(path: &Path, options: &LoadOptions) -> Result<Animation> {
         message: "the text is not UTF-8; save it as UTF-8".to_owned(),
     })?;
     let source = Source { file: &shown, text: &text };
-    let description: Description = toml::from_str(&text).map_err(|error| source.toml_error(&error))?;
+    let mut description: Description = toml::from_str(&text).map_err(|error| source.toml_error(&error))?;
     let assets = Assets::new(Some(&folder_of(path)), options)?;
     let root = assets.files.root().map(Path::to_owned).unwrap_or_default();
     let mut builder = Builder {
@@ -317,12 +373,14 @@ pub(crate) fn open(path: &Path, options: &LoadOptions) -> Result<Animation> {
         root,
         assets,
         cache: Cache::new(options.max_key_cache_bytes),
+        motions: Vec::new(),
         tracks: Tracks::default(),
         courses: Vec::new(),
         generated: 0,
     };
+    let given = description.animation.take();
     let scene = builder.build(description)?;
-    Ok(builder.finish(scene))
+    builder.finish(scene, given.as_ref())
 }
 
 #[derive(Clone, Copy)]
@@ -396,6 +454,7 @@ struct Builder<'a> {
     root: PathBuf,
     assets: Assets,
     cache: Cache,
+    motions: Vec<Motion>,
     tracks: Tracks,
     courses: Vec<Course>,
     generated: u64,
@@ -403,25 +462,32 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     /// The animation about a scene that was built.
-    fn finish(self, scene: Scene) -> Animation {
-        let motion = |track: &MeshTrack| match track {
-            MeshTrack::Still => Motion::Still,
-            MeshTrack::Keys(_) => Motion::Keys,
-            MeshTrack::Rig(_) => Motion::Still,
+    fn finish(self, scene: Scene, given: Option<&AnimationEntry>) -> Result<Animation> {
+        let key_tracks: Vec<Option<KeyTrack>> = self
+            .tracks
+            .meshes
+            .iter()
+            .map(|track| match track {
+                MeshTrack::Keys(track) => Some(track.clone()),
+                _ => None,
+            })
+            .collect();
+        let positive = |what: &str, value: Option<&Spanned<Real>>| match value {
+            Some(value) if value.get_ref().0 <= 0.0 => {
+                Err(self.source.error_in(value.span(), format!("{what} is {}; it must be above 0", value.get_ref().0)))
+            }
+            value => Ok(value.map(|value| value.get_ref().0)),
         };
-        let keys = self.tracks.meshes.iter().map(|track| match track {
-            MeshTrack::Keys(track) => Some(track.clone()),
-            MeshTrack::Still | MeshTrack::Rig(_) => None,
-        });
-        let keys: Vec<Option<KeyTrack>> = keys.collect();
+        let duration = positive("duration", given.and_then(|given| given.duration.as_ref()))?;
+        let fps = positive("fps", given.and_then(|given| given.fps.as_ref()))?;
         let mut animation = Animation::still(scene);
-        animation.motions = self.tracks.meshes.iter().map(motion).collect();
-        if keys.iter().any(Option::is_some) {
-            animation.keys = Some(KeyReader::new(keys, self.assets, self.cache, &animation.scene.warnings));
+        animation.motions = self.motions;
+        if key_tracks.iter().any(Option::is_some) {
+            animation.keys = Some(KeyReader::new(key_tracks, self.assets, self.cache, &animation.scene.warnings));
         }
         animation.tracks = self.tracks;
-        animation.set_course(&self.courses, None, None);
-        animation
+        animation.set_course(&self.courses, duration, fps);
+        Ok(animation)
     }
 
     fn build(&mut self, description: Description) -> Result<Scene> {
@@ -446,7 +512,7 @@ impl Builder<'_> {
             let at = entry.span().start;
             meshes.push(self.mesh(entry.into_inner(), at, &named)?);
         }
-        let lights = description.light.into_iter().map(|entry| self.light(entry)).collect::<Result<Vec<_>>>()?;
+        let lights = description.light.into_iter().map(|entry| self.moving_light(entry)).collect::<Result<Vec<_>>>()?;
         let background = match description.background {
             Some(entry) => self.background(entry)?,
             None => DEFAULT_BACKGROUND,
@@ -465,7 +531,7 @@ impl Builder<'_> {
             scene.defaults = self.render(render)?;
         }
         for entry in description.camera {
-            let camera = self.camera(entry, &scene)?;
+            let camera = self.moving_camera(entry, &scene)?;
             scene.cameras.push(camera);
         }
         if let Some(wanted) = description.render.as_ref().and_then(|render| render.camera.as_ref()) {
@@ -531,14 +597,83 @@ impl Builder<'_> {
         }
     }
 
-    fn camera(&self, entry: Spanned<CameraEntry>, scene: &Scene) -> Result<NamedCamera> {
+    fn interpolation(&self, name: Option<&Spanned<String>>) -> Result<Interpolation> {
+        let Some(name) = name else { return Ok(Interpolation::default()) };
+        let choices = [Interpolation::Step, Interpolation::Linear, Interpolation::Smooth];
+        Ok(choices[self.source.choose("interpolation", name, &["step", "linear", "smooth"])?])
+    }
+
+    /// The curve through keys; `at` is where what has them begins in the scene file.
+    fn curve<const N: usize>(
+        &self,
+        keys: Vec<(f64, [f64; N])>,
+        name: Option<&Spanned<String>>,
+        looped: Option<bool>,
+        bounded: [bool; N],
+        at: usize,
+    ) -> Result<Curve<N>> {
+        let interpolation = self.interpolation(name)?;
+        Curve::new(keys, interpolation, looped.unwrap_or(false), bounded)
+            .ok_or_else(|| self.source.error(at, "the times of keys must be 0 or above, each later than the one before"))
+    }
+
+    fn moving_camera(&mut self, entry: Spanned<CameraEntry>, scene: &Scene) -> Result<NamedCamera> {
         let source = self.source;
         let at = entry.span().start;
-        let entry = entry.into_inner();
+        let mut entry = entry.into_inner();
         let name = entry.name.get_ref().clone();
         if scene.cameras.iter().any(|camera| camera.name == name) {
             return Err(source.error_in(entry.name.span(), format!("camera \"{name}\" is there twice; rename one")));
         }
+        if entry.key.is_empty() {
+            if entry.interpolation.is_some() || entry.looped.is_some() {
+                return Err(source.error(at, "interpolation and loop of a camera belong to keys; a turntable goes on by itself"));
+            }
+            let turntable = match &entry.turntable {
+                Some(seconds) if seconds.get_ref().0 == 0.0 => {
+                    return Err(source.error_in(seconds.span(), "a turntable needs seconds for a turn, below 0 to turn the other way"));
+                }
+                seconds => seconds.as_ref().map(|seconds| seconds.get_ref().0),
+            };
+            let camera = self.camera(&entry, at, scene)?;
+            self.tracks.cameras.push(match turntable {
+                Some(seconds) => {
+                    self.courses.push(Course { seconds: seconds.abs(), looped: true, fps: None });
+                    CameraTrack::Turntable(Turntable { seconds, axis: normalised(scene.up.map(f64::from)).unwrap_or([0.0, 1.0, 0.0]) })
+                }
+                None => CameraTrack::Still,
+            });
+            return Ok(NamedCamera { name, camera });
+        }
+        if let Some(turntable) = &entry.turntable {
+            return Err(source.error_in(turntable.span(), "a camera has keys or a turntable, not both"));
+        }
+        let mut keys = Vec::new();
+        let mut orthographic = None;
+        for key in std::mem::take(&mut entry.key) {
+            let at = key.span().start;
+            let key = key.into_inner();
+            entry.eye = key.eye.or(entry.eye);
+            entry.target = key.target.or(entry.target);
+            entry.up = key.up.or(entry.up);
+            entry.fov = key.fov.or(entry.fov);
+            entry.orthographic_height = key.orthographic_height.or(entry.orthographic_height);
+            let camera = self.camera(&entry, at, scene)?;
+            if *orthographic.get_or_insert(camera.orthographic_height.is_some()) != camera.orthographic_height.is_some() {
+                return Err(source.error(at, "a camera is orthographic in all its keys or in none; give the first one orthographic_height"));
+            }
+            keys.push((key.time.0, camera_values(&camera)));
+        }
+        let curve = self.curve(keys, entry.interpolation.as_ref(), entry.looped, CAMERA_BOUNDED, at)?;
+        self.courses.push(Course::of(&curve));
+        let moving = CameraCurve::new(curve, orthographic.unwrap_or(false));
+        let camera = moving.at(0.0);
+        self.tracks.cameras.push(CameraTrack::Keys(moving));
+        Ok(NamedCamera { name, camera })
+    }
+
+    fn camera(&self, entry: &CameraEntry, at: usize, scene: &Scene) -> Result<Camera> {
+        let source = self.source;
         let fov = entry.fov.as_ref().map(|fov| source.within("fov", fov, 0.01, 179.0)).transpose()?;
         let orthographic_height =
             entry.orthographic_height.as_ref().map(|height| source.above_zero("orthographic_height", height)).transpose()?;
@@ -580,13 +715,60 @@ impl Builder<'_> {
         if dot(side, side) < 1e-12 {
             return Err(source.error(at, "a camera must not look along its up; give another up"));
         }
-        Ok(NamedCamera { name, camera })
+        Ok(camera)
     }
 
-    fn light(&self, entry: Spanned<LightEntry>) -> Result<Light> {
+    fn moving_light(&mut self, entry: Spanned<LightEntry>) -> Result<Light> {
         let source = self.source;
         let at = entry.span().start;
-        let entry = entry.into_inner();
+        let mut entry = entry.into_inner();
+        if entry.key.is_empty() {
+            if entry.interpolation.is_some() || entry.looped.is_some() {
+                return Err(source.error(at, "interpolation and loop of a light belong to keys"));
+            }
+            self.tracks.lights.push(LightTrack::Still);
+            return self.light(&entry, at);
+        }
+        let mut keys = Vec::new();
+        let mut first: Option<Light> = None;
+        let mut aimed = None;
+        for key in std::mem::take(&mut entry.key) {
+            let at = key.span().start;
+            let key = key.into_inner();
+            entry.position = key.position.or(entry.position);
+            entry.direction = key.direction.or(entry.direction);
+            entry.target = key.target.or(entry.target);
+            entry.intensity = key.intensity.or(entry.intensity);
+            entry.irradiance = key.irradiance.or(entry.irradiance);
+            let light = self.light(&entry, at)?;
+            first.get_or_insert(light);
+            if *aimed.get_or_insert(entry.target.is_some()) != entry.target.is_some() {
+                return Err(source.error(at, "a light has a target in all its keys or in none"));
+            }
+            let (direction, power) = match light {
+                Light::Point { intensity, .. } => ([0.0; 3], intensity),
+                Light::Directional { direction, irradiance } => (direction, irradiance),
+                Light::Spot { direction, intensity, .. } => (direction, intensity),
+            };
+            let towards = entry.target.as_ref().map_or(direction, |target| plain(*target.get_ref()));
+            let parts = [entry.position.map_or([0.0; 3], plain), towards, power];
+            let mut values = [0.0; 9];
+            values.iter_mut().zip(parts.as_flattened()).for_each(|(value, part)| *value = f64::from(*part));
+            keys.push((key.time.0, values));
+        }
+        let curve = self.curve(keys, entry.interpolation.as_ref(), entry.looped, LIGHT_BOUNDED, at)?;
+        self.courses.push(Course::of(&curve));
+        let moving = LightCurve::new(curve, aimed.unwrap_or(false));
+        let light = match first {
+            Some(first) => moving.at(&first, 0.0),
+            None => self.light(&entry, at)?,
+        };
+        self.tracks.lights.push(LightTrack::Keys(moving));
+        Ok(light)
+    }
+
+    fn light(&self, entry: &LightEntry, at: usize) -> Result<Light> {
+        let source = self.source;
         let missing = |what: &str| source.error(at, format!("a {} light needs {what}", entry.kind.get_ref()));
         let unused = |what: &str| source.error(at, format!("a {} light has no {what}", entry.kind.get_ref()));
         let position = || entry.position.map(plain).ok_or_else(|| missing("position = [x, y, z]"));
@@ -697,7 +879,7 @@ impl Builder<'_> {
         self.assets.files.find(&self.root, name.get_ref()).map_err(|error| self.source.error_in(name.span(), error.to_string()))
     }
 
-    fn mesh(&mut self, entry: MeshEntry, at: usize, named: &[String]) -> Result<Mesh> {
+    fn mesh(&mut self, mut entry: MeshEntry, at: usize, named: &[String]) -> Result<Mesh> {
         let source = self.source;
         let material = match &entry.material {
             Some(name) => Some(source.choose("material", name, &named.iter().map(String::as_str).collect::<Vec<_>>())? as u32),
@@ -706,14 +888,24 @@ impl Builder<'_> {
         if entry.sequence.is_none() {
             self.refuse_sequence_keys(&entry, at)?;
         }
-        let mut edit =
-            Edit { name: entry.name.clone(), material, uv_scale: entry.uv_scale.map(|scale| scale.0), transform: self.transform(&entry)? };
-        let (mut mesh, track) = match (&entry.file, &entry.sequence, &entry.shape) {
+        let transform = if entry.key.is_empty() {
+            if let Some(interpolation) = &entry.interpolation {
+                return Err(source.error_in(interpolation.span(), "interpolation of a mesh belongs to keys; a sequence has interpolate"));
+            }
+            self.transform(&entry)?
+        } else if let Some(sequence) = &entry.sequence {
+            return Err(source.error_in(sequence.span(), "a mesh has keys or a sequence, not both"));
+        } else {
+            // The keys hold the rest of its place.
+            self.matrix(&entry)?.unwrap_or(Transform::IDENTITY)
+        };
+        let mut edit = Edit { name: entry.name.clone(), material, uv_scale: entry.uv_scale.map(|scale| scale.0), transform };
+        let mut mesh = match (&entry.file, &entry.sequence, &entry.shape) {
             (Some(file), None, None) => {
                 self.refuse_shape_keys(&entry, at)?;
                 let path = self.find(file)?;
                 let timed = mesh_file::read(&mut self.assets, &path, file.get_ref()).map_err(|error| self.in_place(file.span(), error))?;
-                (timed.mesh, MeshTrack::Still)
+                timed.mesh
             }
             (None, Some(sequence), None) => {
                 self.refuse_shape_keys(&entry, at)?;
@@ -721,14 +913,51 @@ impl Builder<'_> {
                 let mesh = first_mesh(&mut self.assets, &mut self.cache, &track).map_err(|error| self.in_place(sequence.span(), error))?;
                 self.courses.push(track.course());
                 self.tracks.meshes.push(MeshTrack::Keys(track));
+                self.motions.push(Motion::Keys);
                 return Ok(mesh);
             }
-            (None, None, Some(shape)) => (self.shape(&entry, shape, at)?, MeshTrack::Still),
+            (None, None, Some(shape)) => self.shape(&entry, shape, at)?,
             _ => return Err(source.error(at, "a mesh needs one of: file = \"name.obj\", sequence = \"name.%04d.obj\", shape = \"sphere\"")),
         };
         edit.apply(&mut mesh);
-        self.tracks.meshes.push(track);
+        if entry.key.is_empty() {
+            self.tracks.meshes.push(MeshTrack::Still);
+            self.motions.push(Motion::Still);
+        } else {
+            let placed = self.placed(&mut entry, at)?;
+            self.motions.push(Motion::Deformed(Box::new(placed.deform(&mut mesh))));
+            self.courses.push(Course::of(placed.curve()));
+            self.tracks.meshes.push(MeshTrack::Placed(placed));
+        }
         Ok(mesh)
+    }
+
+    /// The course of a mesh with keys.
+    fn placed(&self, entry: &mut MeshEntry, at: usize) -> Result<PlacedCurve> {
+        let mut keys = Vec::new();
+        let mut first: Option<[f32; 3]> = None;
+        for key in std::mem::take(&mut entry.key) {
+            let key = key.into_inner();
+            entry.translate = key.translate.or(entry.translate);
+            entry.rotate = key.rotate.or(entry.rotate);
+            if let Some(scale) = key.scale {
+                entry.scale = Some(scale);
+            }
+            let scale = entry.scale.as_ref().map_or([1.0; 3], |scale| scale.get_ref().0);
+            let first = first.get_or_insert(scale);
+            if let Some(given) = &entry.scale
+                && (0..3).any(|axis| (scale[axis] < 0.0) != (first[axis] < 0.0))
+            {
+                return Err(self
+                    .source
+                    .error_in(given.span(), "a scale must keep its sign from key to key: on the way it would flatten the mesh"));
+            }
+            let parts = [entry.translate.map_or([0.0; 3], plain), entry.rotate.map_or([0.0; 3], plain), scale];
+            let mut values = [0.0; 9];
+            values.iter_mut().zip(parts.as_flattened()).for_each(|(value, part)| *value = f64::from(*part));
+            keys.push((key.time.0, values));
+        }
+        self.curve(keys, entry.interpolation.as_ref(), entry.looped, PLACED_BOUNDED, at).map(PlacedCurve::new)
     }
 
     /// An error of a file that the scene file names; those that tell their own place are left as they are.
@@ -782,19 +1011,13 @@ impl Builder<'_> {
     }
 
     fn transform(&self, entry: &MeshEntry) -> Result<Transform> {
-        let source = self.source;
-        match (&entry.matrix, entry.translate.is_some() || entry.rotate.is_some() || entry.scale.is_some()) {
-            (Some(matrix), true) => Err(source.error_in(matrix.span(), "a mesh has a matrix, or translate, rotate and scale, not both")),
-            (Some(matrix), false) => {
-                let rows: Vec<[f64; 4]> = matrix.get_ref().iter().map(|row| plain(*row).map(f64::from)).collect();
-                Transform::from_rows(&rows).ok_or_else(|| {
-                    source.error_in(
-                        matrix.span(),
-                        "matrix must be 3 rows of 4 numbers (or 4 rows, the last [0, 0, 0, 1]) and not flatten the mesh",
-                    )
-                })
+        match self.matrix(entry)? {
+            Some(_) if entry.translate.is_some() || entry.rotate.is_some() || entry.scale.is_some() => {
+                let span = entry.matrix.as_ref().map(Spanned::span).unwrap_or_default();
+                Err(self.source.error_in(span, "a mesh has a matrix, or translate, rotate and scale, not both"))
             }
-            (None, _) => Ok(Transform::new(
+            Some(matrix) => Ok(matrix),
+            None => Ok(Transform::new(
                 entry.scale.as_ref().map_or([1.0; 3], |scale| scale.get_ref().0).map(f64::from),
                 entry.rotate.map_or([0.0; 3], plain).map(f64::from),
                 entry.translate.map_or([0.0; 3], plain).map(f64::from),
@@ -802,17 +1025,28 @@ impl Builder<'_> {
         }
     }
 
+    fn matrix(&self, entry: &MeshEntry) -> Result<Option<Transform>> {
+        let Some(matrix) = &entry.matrix else { return Ok(None) };
+        let rows: Vec<[f64; 4]> = matrix.get_ref().iter().map(|row| plain(*row).map(f64::from)).collect();
+        Transform::from_rows(&rows).map(Some).ok_or_else(|| {
+            self.source
+                .error_in(matrix.span(), "matrix must be 3 rows of 4 numbers (or 4 rows, the last [0, 0, 0, 1]) and not flatten the mesh")
+        })
+    }
+
     fn refuse_sequence_keys(&self, entry: &MeshEntry, at: usize) -> Result<()> {
         let keys = [
             ("fps", entry.fps.is_some()),
             ("start", entry.start.is_some()),
-            ("loop", entry.looped.is_some()),
+            ("loop", entry.looped.is_some() && entry.key.is_empty()),
             ("interpolate", entry.interpolate.is_some()),
             ("first", entry.first.is_some()),
             ("last", entry.last.is_some()),
         ];
         match keys.iter().find(|(_, given)| *given) {
-            Some((key, _)) => Err(self.source.error(at, format!("{key} belongs to a sequence"))),
+            Some((key, _)) => {
+                Err(self.source.error(at, format!("{key} belongs to a sequence{}", if *key == "loop" { " or to keys" } else { "" })))
+            }
             None => Ok(()),
         }
     }

@@ -63,6 +63,7 @@
 
 mod animation;
 mod assets;
+mod curve;
 mod description;
 mod error;
 mod files;
@@ -73,6 +74,7 @@ mod key_reader;
 mod lines;
 mod load;
 mod mesh_file;
+mod moving;
 mod mtl;
 mod normals;
 mod obj;

@@ -1,7 +1,7 @@
 //! Where a scene file puts a mesh.
 
 use crate::Mesh;
-use crate::vector::{Vector, cross, dot, normalised};
+use crate::vector::{Vector, cross, dot, normalised, single};
 
 /// An affine map: three rows of a linear part, and a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,14 @@ impl Transform {
         };
         let determinant = transform.determinant();
         (determinant.is_finite() && determinant != 0.0).then_some(transform)
+    }
+
+    /// Three rows of four numbers, the last of each the translation's.
+    pub(crate) fn matrix(&self) -> [[f32; 4]; 3] {
+        std::array::from_fn(|row| {
+            let [x, y, z] = self.rows[row];
+            [x, y, z, self.translation[row]].map(single)
+        })
     }
 
     fn determinant(&self) -> f64 {

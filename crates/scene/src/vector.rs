@@ -28,3 +28,8 @@ pub(crate) fn normalised(a: Vector) -> Option<Vector> {
     let square = dot(a, a);
     (square.is_finite() && square > 0.0).then(|| scale(a, square.sqrt().recip()))
 }
+
+/// In single precision, and finite there.
+pub(crate) fn single(value: f64) -> f32 {
+    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+}

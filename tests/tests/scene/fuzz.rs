@@ -4,7 +4,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use gridwalk_scene::generate::Random;
-use gridwalk_scene::{LoadOptions, Scene, load, load_reader};
+use gridwalk_scene::{Animation, AnimationOptions, LoadOptions, Motion, Pose, Scene, load, load_reader, open};
 
 use super::{folder, ply, png, tga};
 
@@ -179,6 +179,58 @@ fn descriptions() {
         load(&path, &small()).ok()
     });
     assert_mixed("descriptions", scenes, count);
+}
+
+/// What moves keeps to the same rules at any time.
+fn assert_moves(animation: &Animation) {
+    let mut pose = Pose::default();
+    let mut reader = animation.reader().unwrap();
+    assert!(animation.duration.is_finite() && animation.duration >= 0.0 && animation.fps > 0.0 && animation.frame_count(24.0) >= 1);
+    assert_eq!(animation.motions.len(), animation.scene.meshes.len());
+    for time in [0.0, 0.3, 1.0, -5.0, 1e12, f64::NAN] {
+        let camera = animation.camera(None, time).unwrap();
+        assert!(camera.eye != camera.target && camera.eye.iter().chain(&camera.up).all(|value| value.is_finite()));
+        let lights = animation.lights(time);
+        assert!(lights.iter().zip(&animation.scene.lights).all(|(a, b)| std::mem::discriminant(a) == std::mem::discriminant(b)));
+        assert_eq!(lights.len(), animation.scene.lights.len());
+        for (mesh, motion) in animation.motions.iter().enumerate() {
+            let keys = animation.keys_at(mesh, time);
+            match motion {
+                Motion::Keys => {
+                    let count = animation.key_count(mesh);
+                    assert!(keys.first < count && keys.second < count && (0.0..1.0).contains(&keys.weight));
+                    drop(reader.read(mesh, keys.second));
+                }
+                Motion::Deformed(deformed) => {
+                    animation.pose(mesh, time, &mut pose);
+                    assert_eq!((pose.matrices.len(), deformed.positions.len()), (1, animation.scene.meshes[mesh].positions.len()));
+                    assert!(pose.matrices.as_flattened().as_flattened().iter().all(|value| value.is_finite()));
+                }
+                _ => assert_eq!(animation.key_count(mesh), 0),
+            }
+        }
+    }
+}
+
+const MOVING: &[u8] = b"[animation]\nduration = 2\nfps = 12.5\n[[camera]]\nname = \"a\"\nloop = true\n[[camera.key]]\ntime = 0\neye = [0, 1, 5]\n\
+    target = [0, 0, 0]\n[[camera.key]]\ntime = 1.5\nfov = 60\nup = [0, 1, 1]\n[[camera]]\nname = \"b\"\nturntable = 6\nazimuth = 9\n[[light]]\n\
+    kind = \"spot\"\nintensity = 3\ntarget = [0, 0, 0]\ninterpolation = \"linear\"\n[[light.key]]\ntime = 0\nposition = [0, 3, 0]\n\
+    [[light.key]]\ntime = 1\nintensity = 0\n[[mesh]]\nsequence = \"k.##.obj\"\nfps = 8\nstart = 0.06\nloop = true\nscale = 2\n[[mesh]]\n\
+    sequence = [\"a.obj\", \"k.01.obj\"]\ninterpolate = false\n[[mesh]]\nshape = \"box\"\nrotate = [0, 10, 0]\n[[mesh.key]]\ntime = 0\n\
+    [[mesh.key]]\ntime = 2\nrotate = [0, 360, 0]\nscale = 3\ntranslate = [0, 1, 0]\n";
+
+#[test]
+fn moving_descriptions() {
+    let folder = folder(&[("a.obj", OBJ), ("k.01.obj", OBJ), ("k.02.obj", OBJ), ("k.04.obj", OBJ)]);
+    let path = folder.path().join("scene.toml");
+    let count = 3000;
+    let scenes = fuzz("moving_descriptions", count, |random| {
+        std::fs::write(&path, mutated(MOVING, 2, random)).unwrap();
+        let animation = open(&path, &small(), &AnimationOptions::default()).ok()?;
+        assert_moves(&animation);
+        Some(animation.scene)
+    });
+    assert_mixed("moving_descriptions", scenes, count);
 }
 
 #[test]

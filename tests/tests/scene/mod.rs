@@ -4,6 +4,7 @@ mod animation;
 mod committed;
 mod fuzz;
 mod gltf;
+mod moving;
 mod nasty;
 mod oracle;
 mod ply;

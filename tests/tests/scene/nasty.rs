@@ -302,7 +302,7 @@ fn toml_cases() -> Vec<Case> {
             "a key that is not",
             described("\nweather = \"fine\"\n"),
             Error(
-                "DIR/scene.toml:2: unknown field `weather`, expected one of `up`, `ambient`, `render`, `background`, `camera`, `light`, `material`, `mesh`",
+                "DIR/scene.toml:2: unknown field `weather`, expected one of `up`, `animation`, `ambient`, `render`, `background`, `camera`, `light`, `material`, `mesh`",
             ),
         ),
         (
