@@ -49,7 +49,7 @@ const WORDS: [&[u8]; 28] = [
     b"2147483647",
 ];
 
-fn mutated(bytes: &[u8], most: u64, random: &mut Random) -> Vec<u8> {
+pub(super) fn mutated(bytes: &[u8], most: u64, random: &mut Random) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for _ in 0..=random.below(most) {
         let at = random.below(bytes.len() as u64 + 1) as usize;
@@ -100,7 +100,7 @@ fn assert_sound(scene: &Scene) {
 }
 
 /// Runs `case` for many seeds and returns how many of them gave a scene.
-fn fuzz(name: &str, count: u64, case: impl Fn(&mut Random) -> Option<Scene>) -> u64 {
+pub(super) fn fuzz(name: &str, count: u64, case: impl Fn(&mut Random) -> Option<Scene>) -> u64 {
     let wanted: Option<u64> = std::env::var("GRIDWALK_FUZZ_SEED").ok().and_then(|seed| seed.parse().ok());
     let seeds = wanted.map_or(0..count, |seed| seed..seed + 1);
     seeds
@@ -113,7 +113,7 @@ fn fuzz(name: &str, count: u64, case: impl Fn(&mut Random) -> Option<Scene>) -> 
 }
 
 /// Both outcomes must occur, or the mutations are too weak or too strong to test anything.
-fn assert_mixed(name: &str, scenes: u64, count: u64) {
+pub(super) fn assert_mixed(name: &str, scenes: u64, count: u64) {
     if std::env::var_os("GRIDWALK_FUZZ_SEED").is_none() {
         assert!(scenes > count / 50 && scenes < count - count / 50, "{name}: {scenes} of {count} were scenes");
     }

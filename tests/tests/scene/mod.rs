@@ -4,6 +4,8 @@ mod animation;
 mod committed;
 mod fuzz;
 mod gltf;
+mod gltf_fuzz;
+mod gltf_poses;
 mod moving;
 mod nasty;
 mod oracle;
