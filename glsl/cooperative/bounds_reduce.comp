@@ -11,26 +11,28 @@
 layout(constant_id = 1) const uint TRIANGLES_EACH = 8;
 
 layout(push_constant, std430) uniform BoundsReduce {
-    FloatsIn positions;
-    UintsIn indices;
+    StateIn state;
+    TriangleWordsIn triangles;
     BoundsOut partials;
-    uint vertex_count;
-    uint triangle_count;
 };
 
 void main() {
+    uint triangle_count = state.state.triangle_count;
     uint tile = workgroup_index();
     uint tile_size = gl_WorkGroupSize.x * TRIANGLES_EACH;
     Bounds bounds = empty_bounds();
     for (uint i = 0u; i < TRIANGLES_EACH; ++i) {
         uint triangle = tile * tile_size + i * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
         if (triangle < triangle_count) {
-            Vertices vertices = gather_triangle(positions, indices, vertex_count, triangle);
-            if (vertices.dropped) {
+            uvec4 first = triangles.vertex[3u * triangle];
+            if ((first.w & TRIANGLE_DROPPED) != 0u) {
                 bounds.dropped += 1u;
             } else {
-                bounds.low = min(bounds.low, min(vertices.v0, min(vertices.v1, vertices.v2)));
-                bounds.high = max(bounds.high, max(vertices.v0, max(vertices.v1, vertices.v2)));
+                vec3 v0 = uintBitsToFloat(first.xyz);
+                vec3 v1 = uintBitsToFloat(triangles.vertex[3u * triangle + 1u].xyz);
+                vec3 v2 = uintBitsToFloat(triangles.vertex[3u * triangle + 2u].xyz);
+                bounds.low = min(bounds.low, min(v0, min(v1, v2)));
+                bounds.high = max(bounds.high, max(v0, max(v1, v2)));
             }
         }
     }

@@ -6,15 +6,19 @@
 // One workgroup unites the boxes of all tiles into the first: the scene box.
 
 #include "shared/bounds.glsl"
+#include "shared/build.glsl"
+
+layout(constant_id = 1) const uint BOUNDS_TILE = 2048;
 
 layout(push_constant, std430) uniform BoundsSpine {
+    StateIn state;
     BoundsIn partials;
     BoundsOut scene;
-    uint partial_count;
 };
 
 void main() {
     Bounds bounds = empty_bounds();
+    uint partial_count = max((state.state.triangle_count + BOUNDS_TILE - 1u) / BOUNDS_TILE, 1u);
     for (uint i = gl_LocalInvocationID.x; i < partial_count; i += gl_WorkGroupSize.x) {
         bounds = unite(bounds, partials.bounds[i]);
     }

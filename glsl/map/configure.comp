@@ -19,7 +19,7 @@ layout(constant_id = 3) const uint BRICK_TILE = 1024;
 layout(push_constant, std430) uniform Configure {
     BoundsIn scene;
     HeaderOut grid;
-    StateOut state;
+    StateInOut state;
     ArgumentsOut arguments;
     ReportOut report;
     // Only their addresses are taken, for the header.
@@ -27,7 +27,6 @@ layout(push_constant, std430) uniform Configure {
     References references;
     Triangles triangles;
     Bricks bricks;
-    uint triangle_count;
     uint cell_capacity;
     float density;
     uint fixed_x; // 0: by density
@@ -90,6 +89,8 @@ float cell_size_for(float low, float high, float count) {
 
 void main() {
     Bounds bounds = scene.bounds[0];
+    BuildState next = state.state;
+    uint triangle_count = next.triangle_count;
     bool empty = bounds.dropped == triangle_count;
     vec3 low = empty ? vec3(0.0) : bounds.low;
     vec3 high = empty ? vec3(0.0) : bounds.high;
@@ -111,7 +112,7 @@ void main() {
     vec3 limit = min(max(floor(extent / (MIN_CELL_IN_PADS * pad)), vec3(1.0)), vec3(MAX_RESOLUTION));
     float used_density = density;
     uvec3 resolution = uvec3(1u);
-    uint overflow = 0u;
+    uint overflow = next.overflow;
     if (!empty) {
         float triangles_in_use = float(triangle_count - bounds.dropped);
         float wanted = max(triangles_in_use * density, 1.0);
@@ -162,14 +163,8 @@ void main() {
     grid.header = header;
 
     uint largest_key = exact != 0u ? cell_count : cell_count - 1u;
-    BuildState next;
-    next.triangle_count = triangle_count;
-    next.offset_count = triangle_count + 1u;
-    next.pair_total = 0u;
-    next.pair_count = 0u;
     next.key_bits = largest_key == 0u ? 0u : uint(findMSB(largest_key)) + 1u;
     next.pass_count = (next.key_bits + SORT_BITS - 1u) / SORT_BITS;
-    next.table_count = 0u;
     next.overflow = overflow;
     state.state = next;
 
@@ -192,5 +187,5 @@ void main() {
     report.report.box_min = low;
     report.report.density = used_density;
     report.report.box_max = high;
-    report.report.reserved = 0u;
+    report.report.triangle_total = next.triangle_total;
 }

@@ -18,10 +18,13 @@ struct BuildState {
     uint pass_count; // digits in use
     uint table_count; // entries of the digit table
     uint overflow; // OVERFLOW_* bits
+    uint triangle_total; // of all geometries, saturating; triangle_count is at most the capacity
+    uint reserved[3];
 };
 
 const uint OVERFLOW_PAIRS = 1u;
 const uint OVERFLOW_CELLS = 2u;
+const uint OVERFLOW_TRIANGLES = 4u;
 
 // Host twin: gridwalk_core::layout::DispatchArguments; each is a VkDispatchIndirectCommand and a word of padding. A pass that is not in
 // use has zero groups.
@@ -34,6 +37,11 @@ struct DispatchArguments {
     uvec4 cell_ranges;
     uvec4 brick_reduce;
     uvec4 brick_distance;
+    // Written only where geometries are counted on the device.
+    uvec4 gather;
+    uvec4 bounds_reduce;
+    uvec4 overlap_count;
+    uvec4 offsets_scan;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer StateIn { BuildState state; };
@@ -60,7 +68,7 @@ struct Report {
     vec3 box_min;
     float density;
     vec3 box_max;
-    uint reserved;
+    uint triangle_total;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer ArgumentsOut { DispatchArguments arguments; };

@@ -1,33 +1,33 @@
-// Input triangles, as the caller has them.
+// Triangles as a build first writes them: in input coordinates, three vertices each, with a word more in each fourth component.
 #ifndef GATHER_GLSL
 #define GATHER_GLSL
 
 #include "shared/build.glsl"
 #include "shared/intersect.glsl"
 
-struct Vertices {
-    vec3 v0;
-    vec3 v1;
-    vec3 v2;
-    bool dropped; // a vertex is not finite, or its index lies outside of the positions
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer TriangleWordsOut { uvec4 vertex[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer TriangleWordsInOut { uvec4 vertex[]; };
+
+// What of a triangle is the same for all of its geometry.
+struct TriangleWords {
+    uint flags; // TRIANGLE_* bits, and the triangle's number in its geometry
+    uint id; // of the geometry
+    uint mask;
 };
 
-vec3 position(FloatsIn positions, uint vertex) {
-    return vec3(positions.word[3u * vertex], positions.word[3u * vertex + 1u], positions.word[3u * vertex + 2u]);
+// A triangle with a vertex that is not finite is dropped: it stays in its place, all zero, and no cell lists it.
+void write_triangle(TriangleWordsOut triangles, uint triangle, vec3 v0, vec3 v1, vec3 v2, bool is_whole, TriangleWords words) {
+    bool dropped = !(is_whole && is_finite(v0) && is_finite(v1) && is_finite(v2));
+    uint flags = words.flags | (dropped ? TRIANGLE_DROPPED : 0u);
+    triangles.vertex[3u * triangle] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v0), flags);
+    triangles.vertex[3u * triangle + 1u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v1), words.id);
+    triangles.vertex[3u * triangle + 2u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v2), words.mask);
 }
 
-Vertices gather_triangle(FloatsIn positions, UintsIn indices, uint vertex_count, uint triangle) {
-    uvec3 vertex = uvec3(indices.word[3u * triangle], indices.word[3u * triangle + 1u], indices.word[3u * triangle + 2u]);
-    Vertices result = Vertices(vec3(0.0), vec3(0.0), vec3(0.0), true);
-    result.dropped = any(greaterThanEqual(vertex, uvec3(vertex_count)));
-    if (result.dropped) {
-        return result;
-    }
-    result.v0 = position(positions, vertex.x);
-    result.v1 = position(positions, vertex.y);
-    result.v2 = position(positions, vertex.z);
-    result.dropped = !(is_finite(result.v0) && is_finite(result.v1) && is_finite(result.v2));
-    return result;
+// The head of a build's state, from which all later steps take the number of triangles.
+BuildState gathered_state(uint triangle_count, uint triangle_total) {
+    uint overflow = triangle_total > triangle_count ? OVERFLOW_TRIANGLES : 0u;
+    return BuildState(triangle_count, triangle_count + 1u, 0u, 0u, 0u, 0u, 0u, overflow, triangle_total, uint[3](0u, 0u, 0u));
 }
 
 #endif

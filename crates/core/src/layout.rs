@@ -11,6 +11,18 @@ pub const OVERFLOW_PAIRS: u32 = 1;
 /// [`Report::overflow`]: the resolution was lowered to fit the capacity of cells.
 pub const OVERFLOW_CELLS: u32 = 2;
 
+/// [`Report::overflow`]: triangles beyond the capacity were left out; [`Report::triangle_total`] would have sufficed, unless saturated.
+pub const OVERFLOW_TRIANGLES: u32 = 4;
+
+/// Of the word beside a triangle's first vertex: a vertex is not finite, or an index out of range. Then all its vertices are zero.
+pub const TRIANGLE_DROPPED: u32 = 1 << 31;
+/// Of the same word: the triangle's front is where its vertices go round clockwise.
+pub const TRIANGLE_FLIPPED: u32 = 1 << 30;
+/// Of the same word: the triangle is never culled.
+pub const TRIANGLE_TWO_SIDED: u32 = 1 << 29;
+/// Of the same word: the triangle's number in its geometry.
+pub const TRIANGLE_NUMBER: u32 = (1 << 26) - 1;
+
 /// Head of a grid in device memory; in the grid's frame: (input coordinate - `middle`) * `scale`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -86,8 +98,12 @@ pub struct BuildState {
     pub pass_count: u32,
     /// Entries of the sort's digit table.
     pub table_count: u32,
-    /// [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`].
+    /// [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`], [`OVERFLOW_TRIANGLES`].
     pub overflow: u32,
+    /// Triangles of all geometries, saturating; `triangle_count` is at most the capacity.
+    pub triangle_total: u32,
+    /// Zero.
+    pub reserved: [u32; 3],
 }
 
 /// Arguments of the build's indirect dispatches; each a `VkDispatchIndirectCommand` and a word of padding.
@@ -110,6 +126,14 @@ pub struct DispatchArguments {
     pub brick_reduce: [u32; 4],
     /// Of `brick_distance_x`, `_y` and `_z`.
     pub brick_distance: [u32; 4],
+    /// Of `gather_records`; this and those below are written only where geometries are counted on the device.
+    pub gather: [u32; 4],
+    /// Of `bounds_reduce`.
+    pub bounds_reduce: [u32; 4],
+    /// Of `overlap_count`.
+    pub overlap_count: [u32; 4],
+    /// Of the reduce and the downsweep of the offsets' scan.
+    pub offsets_scan: [u32; 4],
 }
 
 /// The box of some triangles.
@@ -135,7 +159,7 @@ impl Bounds {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Report {
-    /// Triangles given.
+    /// Triangles of the grid, dropped ones included.
     pub triangles: u32,
     /// Triangles left out: a vertex is not finite, or an index lies outside of the positions.
     pub dropped: u32,
@@ -151,7 +175,7 @@ pub struct Report {
     pub pairs: u32,
     /// Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more.
     pub pair_total: u32,
-    /// 0, or bits [`OVERFLOW_PAIRS`] and [`OVERFLOW_CELLS`].
+    /// 0, or bits [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`] and [`OVERFLOW_TRIANGLES`].
     pub overflow: u32,
     /// Bits of the sort's largest key.
     pub key_bits: u32,
@@ -161,8 +185,8 @@ pub struct Report {
     pub density: f32,
     /// Maximum of the scene box, in input coordinates.
     pub box_max: [f32; 3],
-    /// Zero.
-    pub reserved: u32,
+    /// Triangles of all geometries: the capacity of triangles that the build needed. 0xFFFFFFFF: that many or more.
+    pub triangle_total: u32,
 }
 
 impl Report {
@@ -174,6 +198,11 @@ impl Report {
     /// Whether the resolution was lowered for lack of capacity: the grid is complete, only coarser than asked for.
     pub const fn cells_overflowed(&self) -> bool {
         self.overflow & OVERFLOW_CELLS != 0
+    }
+
+    /// Whether triangles were left out for lack of capacity: the grid is sound but misses the last of them.
+    pub const fn triangles_overflowed(&self) -> bool {
+        self.overflow & OVERFLOW_TRIANGLES != 0
     }
 
     /// The capacity of pairs that the build needed; `None` if only a lower density helps.

@@ -3,6 +3,7 @@
 
 pub mod dispatch;
 pub mod gather;
+pub mod geometry;
 pub mod grid;
 pub mod intersect;
 pub mod kernel;
@@ -15,5 +16,6 @@ pub mod twin;
 pub mod vector;
 pub mod walk;
 
+pub use geometry::GeometryRecord;
 pub use layout::Report;
 pub use ray::{Hit, MISS, Ray, UNFINISHED};

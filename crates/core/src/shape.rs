@@ -106,6 +106,7 @@ impl Shape {
             "ITEMS_EACH" => self.scan_items,
             "SCAN_TILE" => self.scan_tile(),
             "TRIANGLES_EACH" => self.reduce_items,
+            "BOUNDS_TILE" => self.bounds_tile(),
             "BRICKS_EACH" => self.reduce_bricks,
             "BRICK_TILE" => self.brick_tile(),
             "SORT_BITS" => self.sort_bits,
@@ -120,9 +121,8 @@ impl Shape {
     pub fn local_size(&self, kernel: &Kernel) -> u32 {
         match kernel.name {
             "sort_histogram" | "sort_scatter" => self.sort_size,
-            "bounds_reduce" | "bounds_spine" | "brick_reduce" | "report_spine" | "scan_reduce" | "scan_spine" | "scan_downsweep" => {
-                self.scan_size
-            }
+            "bounds_reduce" | "bounds_spine" | "brick_reduce" | "geometry_scan" | "report_spine" | "scan_reduce" | "scan_spine"
+            | "scan_downsweep" => self.scan_size,
             _ => self.map_size,
         }
     }

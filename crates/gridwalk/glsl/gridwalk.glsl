@@ -74,8 +74,15 @@ const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
 // [begin, end) in the references; {0, 0} for an empty cell.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint triangle[]; };
-// Three vertices a triangle, the fourth component unused; all zero for a dropped triangle, which no ray hits.
+// Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
+// triangle's number in its geometry, the geometry's id, and its mask.
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TriangleWordsIn { uvec4 vertex[]; };
+
+const uint TRIANGLE_DROPPED = 1u << 31;
+const uint TRIANGLE_FLIPPED = 1u << 30; // its front is where its vertices go round clockwise
+const uint TRIANGLE_TWO_SIDED = 1u << 29; // never culled
+const uint TRIANGLE_NUMBER = (1u << 26) - 1u;
 
 // A brick is a block of 4^3 cells. Bit x + 4 y + 16 z of the mask (low word first) is set for a cell that is not empty. All bricks closer
 // than `distance`, in the maximum norm, are empty: 0 for a brick that is not.

@@ -48,8 +48,8 @@ pub static BOUNDS_REDUCE: Kernel = Kernel {
     spirv: spirv!("../spirv/bounds_reduce.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 32,
-    accesses: &[("positions", Access::Read), ("indices", Access::Read), ("partials", Access::Write)],
+    push_constant_size: 24,
+    accesses: &[("state", Access::Read), ("triangles", Access::Read), ("partials", Access::Write)],
     spec_constants: &[(1, "TRIANGLES_EACH", 8)],
 };
 
@@ -61,8 +61,8 @@ pub static BOUNDS_SPINE: Kernel = Kernel {
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
-    accesses: &[("partials", Access::Read), ("scene", Access::Write)],
-    spec_constants: &[],
+    accesses: &[("state", Access::Read), ("partials", Access::Read), ("scene", Access::Write)],
+    spec_constants: &[(1, "BOUNDS_TILE", 2048)],
 };
 
 /// Kernel `brick_distance_x`, from `glsl/map/brick_distance_x.comp`.
@@ -193,11 +193,11 @@ pub static CONFIGURE: Kernel = Kernel {
     spirv: spirv!("../spirv/configure.spv"),
     local_size: [1, 1, 1],
     local_size_ids: [None, None, None],
-    push_constant_size: 104,
+    push_constant_size: 96,
     accesses: &[
         ("scene", Access::Read),
         ("grid", Access::Write),
-        ("state", Access::Write),
+        ("state", Access::ReadWrite),
         ("arguments", Access::Write),
         ("report", Access::Write),
         ("cells", Access::Read),
@@ -208,6 +208,42 @@ pub static CONFIGURE: Kernel = Kernel {
     spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "BRICK_TILE", 1024)],
 };
 
+/// Kernel `gather`, from `glsl/map/gather.comp`.
+pub static GATHER: Kernel = Kernel {
+    name: "gather",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/gather.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[("positions", Access::Read), ("indices", Access::Read), ("triangles", Access::Write), ("state", Access::Write)],
+    spec_constants: &[],
+};
+
+/// Kernel `gather_records`, from `glsl/map/gather_records.comp`.
+pub static GATHER_RECORDS: Kernel = Kernel {
+    name: "gather_records",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/gather_records.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[("records", Access::Read), ("firsts", Access::Read), ("state", Access::Read), ("triangles", Access::Write)],
+    spec_constants: &[],
+};
+
+/// Kernel `geometry_scan`, from `glsl/cooperative/geometry_scan.comp`.
+pub static GEOMETRY_SCAN: Kernel = Kernel {
+    name: "geometry_scan",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/geometry_scan.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[("records", Access::Read), ("firsts", Access::Write), ("state", Access::Write), ("arguments", Access::Write)],
+    spec_constants: &[(1, "ITEMS_EACH", 16), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "BOUNDS_TILE", 2048)],
+};
+
 /// Kernel `overlap_count`, from `glsl/map/overlap_count.comp`.
 pub static OVERLAP_COUNT: Kernel = Kernel {
     name: "overlap_count",
@@ -215,14 +251,8 @@ pub static OVERLAP_COUNT: Kernel = Kernel {
     spirv: spirv!("../spirv/overlap_count.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 48,
-    accesses: &[
-        ("grid", Access::Read),
-        ("positions", Access::Read),
-        ("indices", Access::Read),
-        ("triangles", Access::Write),
-        ("counts", Access::Write),
-    ],
+    push_constant_size: 32,
+    accesses: &[("grid", Access::Read), ("state", Access::Read), ("triangles", Access::ReadWrite), ("counts", Access::Write)],
     spec_constants: &[],
 };
 
@@ -377,6 +407,9 @@ pub static ALL: &[&Kernel] = &[
     &CLOSEST_CANDIDATE,
     &CLOSEST_HIT,
     &CONFIGURE,
+    &GATHER,
+    &GATHER_RECORDS,
+    &GEOMETRY_SCAN,
     &OVERLAP_COUNT,
     &OVERLAP_EMIT,
     &PAIR_ARGS,
@@ -424,26 +457,22 @@ const _: () = {
 };
 const _: () = {
     use crate::push::BoundsReduce as Host;
-    assert!(core::mem::offset_of!(Host, positions) == 0);
-    assert!(size(|host: &Host| &host.positions) == 8);
-    assert!(core::mem::offset_of!(Host, indices) == 8);
-    assert!(size(|host: &Host| &host.indices) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 8);
+    assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, partials) == 16);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, vertex_count) == 24);
-    assert!(size(|host: &Host| &host.vertex_count) == 4);
-    assert!(core::mem::offset_of!(Host, triangle_count) == 28);
-    assert!(size(|host: &Host| &host.triangle_count) == 4);
-    assert!(size_of::<Host>() == 32);
+    assert!(size_of::<Host>() == 24);
 };
 const _: () = {
     use crate::push::BoundsSpine as Host;
-    assert!(core::mem::offset_of!(Host, partials) == 0);
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 8);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, scene) == 8);
+    assert!(core::mem::offset_of!(Host, scene) == 16);
     assert!(size(|host: &Host| &host.scene) == 8);
-    assert!(core::mem::offset_of!(Host, partial_count) == 16);
-    assert!(size(|host: &Host| &host.partial_count) == 4);
     assert!(size_of::<Host>() == 24);
 };
 const _: () = {
@@ -536,6 +565,10 @@ const _: () = {
     assert!(size(|host: &Host| &host.table_count) == 4);
     assert!(core::mem::offset_of!(Host, overflow) == 28);
     assert!(size(|host: &Host| &host.overflow) == 4);
+    assert!(core::mem::offset_of!(Host, triangle_total) == 32);
+    assert!(size(|host: &Host| &host.triangle_total) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 36);
+    assert!(size(|host: &Host| &host.reserved) == 12);
 };
 const _: () = {
     use crate::push::CellRanges as Host;
@@ -607,21 +640,19 @@ const _: () = {
     assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, bricks) == 64);
     assert!(size(|host: &Host| &host.bricks) == 8);
-    assert!(core::mem::offset_of!(Host, triangle_count) == 72);
-    assert!(size(|host: &Host| &host.triangle_count) == 4);
-    assert!(core::mem::offset_of!(Host, cell_capacity) == 76);
+    assert!(core::mem::offset_of!(Host, cell_capacity) == 72);
     assert!(size(|host: &Host| &host.cell_capacity) == 4);
-    assert!(core::mem::offset_of!(Host, density) == 80);
+    assert!(core::mem::offset_of!(Host, density) == 76);
     assert!(size(|host: &Host| &host.density) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_x) == 84);
+    assert!(core::mem::offset_of!(Host, fixed_x) == 80);
     assert!(size(|host: &Host| &host.fixed_x) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_y) == 88);
+    assert!(core::mem::offset_of!(Host, fixed_y) == 84);
     assert!(size(|host: &Host| &host.fixed_y) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_z) == 92);
+    assert!(core::mem::offset_of!(Host, fixed_z) == 88);
     assert!(size(|host: &Host| &host.fixed_z) == 4);
-    assert!(core::mem::offset_of!(Host, exact) == 96);
+    assert!(core::mem::offset_of!(Host, exact) == 92);
     assert!(size(|host: &Host| &host.exact) == 4);
-    assert!(size_of::<Host>() == 104);
+    assert!(size_of::<Host>() == 96);
 };
 const _: () = {
     use gridwalk_core::layout::DispatchArguments as Host;
@@ -641,6 +672,92 @@ const _: () = {
     assert!(size(|host: &Host| &host.brick_reduce) == 16);
     assert!(core::mem::offset_of!(Host, brick_distance) == 448);
     assert!(size(|host: &Host| &host.brick_distance) == 16);
+    assert!(core::mem::offset_of!(Host, gather) == 464);
+    assert!(size(|host: &Host| &host.gather) == 16);
+    assert!(core::mem::offset_of!(Host, bounds_reduce) == 480);
+    assert!(size(|host: &Host| &host.bounds_reduce) == 16);
+    assert!(core::mem::offset_of!(Host, overlap_count) == 496);
+    assert!(size(|host: &Host| &host.overlap_count) == 16);
+    assert!(core::mem::offset_of!(Host, offsets_scan) == 512);
+    assert!(size(|host: &Host| &host.offsets_scan) == 16);
+};
+const _: () = {
+    use crate::push::Gather as Host;
+    assert!(core::mem::offset_of!(Host, positions) == 0);
+    assert!(size(|host: &Host| &host.positions) == 8);
+    assert!(core::mem::offset_of!(Host, indices) == 8);
+    assert!(size(|host: &Host| &host.indices) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 16);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 24);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 32);
+    assert!(size(|host: &Host| &host.vertex_count) == 4);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 36);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use crate::push::GatherRecords as Host;
+    assert!(core::mem::offset_of!(Host, records) == 0);
+    assert!(size(|host: &Host| &host.records) == 8);
+    assert!(core::mem::offset_of!(Host, firsts) == 8);
+    assert!(size(|host: &Host| &host.firsts) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 16);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 24);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, record_count) == 32);
+    assert!(size(|host: &Host| &host.record_count) == 4);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use gridwalk_core::GeometryRecord as Host;
+    assert!(core::mem::offset_of!(Host, transform) == 0);
+    assert!(size(|host: &Host| &host.transform) == 48);
+    assert!(core::mem::offset_of!(Host, scale) == 48);
+    assert!(size(|host: &Host| &host.scale) == 12);
+    assert!(core::mem::offset_of!(Host, stride) == 60);
+    assert!(size(|host: &Host| &host.stride) == 4);
+    assert!(core::mem::offset_of!(Host, offset) == 64);
+    assert!(size(|host: &Host| &host.offset) == 12);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 76);
+    assert!(size(|host: &Host| &host.vertex_count) == 4);
+    assert!(core::mem::offset_of!(Host, positions) == 80);
+    assert!(size(|host: &Host| &host.positions) == 8);
+    assert!(core::mem::offset_of!(Host, indices) == 88);
+    assert!(size(|host: &Host| &host.indices) == 8);
+    assert!(core::mem::offset_of!(Host, count) == 96);
+    assert!(size(|host: &Host| &host.count) == 8);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 104);
+    assert!(size(|host: &Host| &host.triangle_count) == 4);
+    assert!(core::mem::offset_of!(Host, format) == 108);
+    assert!(size(|host: &Host| &host.format) == 4);
+    assert!(core::mem::offset_of!(Host, index_type) == 112);
+    assert!(size(|host: &Host| &host.index_type) == 4);
+    assert!(core::mem::offset_of!(Host, id) == 116);
+    assert!(size(|host: &Host| &host.id) == 4);
+    assert!(core::mem::offset_of!(Host, mask) == 120);
+    assert!(size(|host: &Host| &host.mask) == 4);
+    assert!(core::mem::offset_of!(Host, flags) == 124);
+    assert!(size(|host: &Host| &host.flags) == 4);
+    assert!(size_of::<Host>() == 128);
+};
+const _: () = {
+    use crate::push::GeometryScan as Host;
+    assert!(core::mem::offset_of!(Host, records) == 0);
+    assert!(size(|host: &Host| &host.records) == 8);
+    assert!(core::mem::offset_of!(Host, firsts) == 8);
+    assert!(size(|host: &Host| &host.firsts) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 16);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, arguments) == 24);
+    assert!(size(|host: &Host| &host.arguments) == 8);
+    assert!(core::mem::offset_of!(Host, record_count) == 32);
+    assert!(size(|host: &Host| &host.record_count) == 4);
+    assert!(core::mem::offset_of!(Host, triangle_capacity) == 36);
+    assert!(size(|host: &Host| &host.triangle_capacity) == 4);
+    assert!(size_of::<Host>() == 40);
 };
 const _: () = {
     use gridwalk_core::layout::GridHeader as Host;
@@ -693,19 +810,13 @@ const _: () = {
     use crate::push::OverlapCount as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, positions) == 8);
-    assert!(size(|host: &Host| &host.positions) == 8);
-    assert!(core::mem::offset_of!(Host, indices) == 16);
-    assert!(size(|host: &Host| &host.indices) == 8);
-    assert!(core::mem::offset_of!(Host, triangles) == 24);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 16);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, counts) == 32);
+    assert!(core::mem::offset_of!(Host, counts) == 24);
     assert!(size(|host: &Host| &host.counts) == 8);
-    assert!(core::mem::offset_of!(Host, vertex_count) == 40);
-    assert!(size(|host: &Host| &host.vertex_count) == 4);
-    assert!(core::mem::offset_of!(Host, triangle_count) == 44);
-    assert!(size(|host: &Host| &host.triangle_count) == 4);
-    assert!(size_of::<Host>() == 48);
+    assert!(size_of::<Host>() == 32);
 };
 const _: () = {
     use crate::push::OverlapEmit as Host;
@@ -783,8 +894,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.density) == 4);
     assert!(core::mem::offset_of!(Host, box_max) == 64);
     assert!(size(|host: &Host| &host.box_max) == 12);
-    assert!(core::mem::offset_of!(Host, reserved) == 76);
-    assert!(size(|host: &Host| &host.reserved) == 4);
+    assert!(core::mem::offset_of!(Host, triangle_total) == 76);
+    assert!(size(|host: &Host| &host.triangle_total) == 4);
 };
 const _: () = {
     use crate::push::ReportSpine as Host;

@@ -100,13 +100,14 @@ mod tracer;
 pub use ash;
 pub use error::{Error, Result};
 pub use gridwalk_core;
-pub use gridwalk_core::{Hit, MISS, Ray, Report, UNFINISHED, kernel};
+pub use gridwalk_core::geometry::MAX_GEOMETRIES;
+pub use gridwalk_core::{GeometryRecord, Hit, MISS, Ray, Report, UNFINISHED, kernel};
 pub use shape::{Shape, split_workgroups};
 pub use sizes::{
     BuildSizes, Capacity, MAX_CELLS, MAX_PAIRS, MAX_RAYS, MAX_TRIANGLES, MAX_VERTICES, REGION_ALIGNMENT, RegionSize, region_bytes,
 };
 pub use sync::{Access, cmd_barrier};
-pub use tracer::{BuildInfo, BuildOptions, DeviceDesc, Geometry, Input, Overlap, RayCount, Region, Timestamps, TraceInfo, Tracer};
+pub use tracer::{BuildInfo, BuildOptions, DeviceDesc, Geometry, Input, Overlap, RayCount, Records, Region, Timestamps, TraceInfo, Tracer};
 
 /// The public GLSL include in one piece: trace from your own shader.
 pub const GRIDWALK_GLSL: &str = include_str!("../glsl/gridwalk.glsl");

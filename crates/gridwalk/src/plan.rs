@@ -17,6 +17,7 @@ use crate::sizes::{Capacity, pass_capacity};
 pub enum Buffer {
     Positions,
     Indices,
+    Records,
     Header,
     Cells,
     References,
@@ -46,9 +47,10 @@ pub enum Buffer {
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 27] = [
+    pub const ALL: [Buffer; 28] = [
         Buffer::Positions,
         Buffer::Indices,
+        Buffer::Records,
         Buffer::Header,
         Buffer::Cells,
         Buffer::References,
@@ -167,7 +169,7 @@ pub enum Item {
     Barrier(Barrier),
 }
 
-const MAX_ITEMS: usize = 32 + 10 * MAX_PASSES;
+const MAX_ITEMS: usize = 40 + 10 * MAX_PASSES;
 
 /// A list of steps and barriers, without allocation.
 #[derive(Clone, Debug)]
@@ -182,7 +184,7 @@ impl Plan {
     }
 
     fn push(&mut self, item: Item) {
-        // The bound holds for every capacity: a pass adds ten items, everything else fewer than 32.
+        // The bound holds for every capacity: a pass adds ten items, everything else fewer than 40.
         debug_assert!(self.len < MAX_ITEMS);
         if let Some(slot) = self.items.get_mut(self.len) {
             *slot = item;
@@ -212,13 +214,28 @@ impl Plan {
     }
 }
 
-/// What of a geometry the plan depends on.
+/// Where a build's triangles come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// One mesh, whose size is known when recording.
+    Mesh {
+        /// Triangles.
+        triangle_count: u32,
+        /// Vertices.
+        vertex_count: u32,
+    },
+    /// Geometry records in memory.
+    Records {
+        /// How many.
+        record_count: u32,
+    },
+}
+
+/// What of its input the plan of a build depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct BuildInputs {
-    /// Triangles.
-    pub triangle_count: u32,
-    /// Vertices.
-    pub vertex_count: u32,
+    /// Where triangles come from.
+    pub source: Source,
     /// Density k of Equation 3-1.
     pub density: f32,
     /// A fixed resolution instead.
@@ -250,32 +267,69 @@ fn scan(plan: &mut Plan, which: u32, values: Buffer, groups: Dispatch, spine: Di
     plan.step(Step::new(&SCAN_DOWNSWEEP, groups, push::ScanDownsweep { state, partials, values, which, padding: 0 }));
 }
 
+/// Workgroups of the steps that run over all triangles.
+struct TriangleGroups {
+    bounds_reduce: Dispatch,
+    overlap_count: Dispatch,
+    offsets_scan: Dispatch,
+}
+
+/// Triangles into one array, in input coordinates; and how many workgroups they make.
+fn gather(plan: &mut Plan, capacity: &Capacity, source: Source, shape: &Shape) -> TriangleGroups {
+    use Buffer::*;
+    let (state, triangles) = (State.token(), Triangles.token());
+    match source {
+        Source::Mesh { triangle_count, vertex_count } => {
+            let push =
+                push::Gather { positions: Positions.token(), indices: Indices.token(), triangles, state, vertex_count, triangle_count };
+            // The state is begun even without a triangle.
+            plan.step(Step::new(&GATHER, map_groups(triangle_count.max(1), shape), push));
+            plan.barrier(Barrier::Shader);
+            let groups = |count: u32, size: u32| Dispatch::Direct(split_workgroups(count.div_ceil(size)));
+            TriangleGroups {
+                bounds_reduce: Dispatch::Direct(split_workgroups(shape.bounds_tiles(triangle_count))),
+                overlap_count: map_groups(triangle_count + 1, shape),
+                offsets_scan: groups(triangle_count + 1, shape.scan_tile()),
+            }
+        }
+        Source::Records { record_count } => {
+            // The first triangles lie where the offsets will: there are no more geometries than the capacity has triangles.
+            let (records, firsts) = (Records.token(), Offsets.token());
+            let arguments = Arguments.token();
+            let push = push::GeometryScan { records, firsts, state, arguments, record_count, triangle_capacity: capacity.triangles };
+            plan.step(Step::new(&GEOMETRY_SCAN, Dispatch::Direct([1, 1, 1]), push));
+            plan.barrier(Barrier::ShaderAndIndirect);
+            let push = push::GatherRecords { records, firsts, state, triangles, record_count, padding: 0 };
+            plan.step(Step::new(&GATHER_RECORDS, argument(offset_of!(DispatchArguments, gather)), push));
+            plan.barrier(Barrier::Shader);
+            TriangleGroups {
+                bounds_reduce: argument(offset_of!(DispatchArguments, bounds_reduce)),
+                overlap_count: argument(offset_of!(DispatchArguments, overlap_count)),
+                offsets_scan: argument(offset_of!(DispatchArguments, offsets_scan)),
+            }
+        }
+    }
+}
+
 /// The rebuild, from positions and indices to cell ranges (thesis sections 3.1 and 3.4).
 pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> Plan {
     use Buffer::*;
-    let BuildInputs { triangle_count, vertex_count, .. } = *inputs;
     let [fixed_x, fixed_y, fixed_z] = inputs.resolution.unwrap_or([0; 3]);
-    let grid = Header.token();
+    let (grid, state) = (Header.token(), State.token());
     let passes = pass_capacity(capacity, shape);
     let mut plan = Plan::new();
 
-    let partial_count = shape.bounds_tiles(triangle_count);
+    let groups = gather(&mut plan, capacity, inputs.source, shape);
     plan.step(Step::new(
         &BOUNDS_REDUCE,
-        Dispatch::Direct(split_workgroups(partial_count)),
-        push::BoundsReduce {
-            positions: Positions.token(),
-            indices: Indices.token(),
-            partials: BoundsPartials.token(),
-            vertex_count,
-            triangle_count,
-        },
+        groups.bounds_reduce,
+        push::BoundsReduce { state, triangles: Triangles.token(), partials: BoundsPartials.token() },
     ));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
         &BOUNDS_SPINE,
         Dispatch::Direct([1, 1, 1]),
-        push::BoundsSpine { partials: BoundsPartials.token(), scene: SceneBounds.token(), partial_count, padding: 0 },
+        push::BoundsSpine { state, partials: BoundsPartials.token(), scene: SceneBounds.token() },
     ));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
@@ -291,14 +345,12 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
             references: References.token(),
             triangles: Triangles.token(),
             bricks: Bricks.token(),
-            triangle_count,
             cell_capacity: capacity.cells,
             density: inputs.density,
             fixed_x,
             fixed_y,
             fixed_z,
             exact: inputs.exact.into(),
-            padding: 0,
         },
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
@@ -309,20 +361,11 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     ));
     plan.step(Step::new(
         &OVERLAP_COUNT,
-        map_groups(triangle_count + 1, shape),
-        push::OverlapCount {
-            grid,
-            positions: Positions.token(),
-            indices: Indices.token(),
-            triangles: Triangles.token(),
-            counts: Offsets.token(),
-            vertex_count,
-            triangle_count,
-        },
+        groups.overlap_count,
+        push::OverlapCount { grid, state, triangles: Triangles.token(), counts: Offsets.token() },
     ));
     plan.barrier(Barrier::Shader);
-    let tiles = Dispatch::Direct(split_workgroups((triangle_count + 1).div_ceil(shape.scan_tile())));
-    scan(&mut plan, SCAN_OFFSETS, Offsets, tiles, Dispatch::Direct([1, 1, 1]));
+    scan(&mut plan, SCAN_OFFSETS, Offsets, groups.offsets_scan, Dispatch::Direct([1, 1, 1]));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
         &PAIR_ARGS,

@@ -7,21 +7,18 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct BoundsReduce {
-    pub(crate) positions: u64,
-    pub(crate) indices: u64,
+    pub(crate) state: u64,
+    pub(crate) triangles: u64,
     pub(crate) partials: u64,
-    pub(crate) vertex_count: u32,
-    pub(crate) triangle_count: u32,
 }
 
 /// Of kernel `bounds_spine`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct BoundsSpine {
+    pub(crate) state: u64,
     pub(crate) partials: u64,
     pub(crate) scene: u64,
-    pub(crate) partial_count: u32,
-    pub(crate) padding: u32,
 }
 
 /// Of kernel `brick_reduce`.
@@ -181,14 +178,12 @@ pub(crate) struct Configure {
     pub(crate) references: u64,
     pub(crate) triangles: u64,
     pub(crate) bricks: u64,
-    pub(crate) triangle_count: u32,
     pub(crate) cell_capacity: u32,
     pub(crate) density: f32,
     pub(crate) fixed_x: u32,
     pub(crate) fixed_y: u32,
     pub(crate) fixed_z: u32,
     pub(crate) exact: u32,
-    pub(crate) padding: u32,
 }
 
 /// Of kernel `overlap_count`.
@@ -196,12 +191,9 @@ pub(crate) struct Configure {
 #[repr(C)]
 pub(crate) struct OverlapCount {
     pub(crate) grid: u64,
-    pub(crate) positions: u64,
-    pub(crate) indices: u64,
+    pub(crate) state: u64,
     pub(crate) triangles: u64,
     pub(crate) counts: u64,
-    pub(crate) vertex_count: u32,
-    pub(crate) triangle_count: u32,
 }
 
 /// Of kernel `overlap_emit`.
@@ -272,4 +264,40 @@ pub(crate) struct BrickDistanceZ {
     pub(crate) grid: u64,
     pub(crate) distances_y: u64,
     pub(crate) bricks: u64,
+}
+
+/// Of kernel `gather`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Gather {
+    pub(crate) positions: u64,
+    pub(crate) indices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) state: u64,
+    pub(crate) vertex_count: u32,
+    pub(crate) triangle_count: u32,
+}
+
+/// Of kernel `gather_records`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct GatherRecords {
+    pub(crate) records: u64,
+    pub(crate) firsts: u64,
+    pub(crate) state: u64,
+    pub(crate) triangles: u64,
+    pub(crate) record_count: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `geometry_scan`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct GeometryScan {
+    pub(crate) records: u64,
+    pub(crate) firsts: u64,
+    pub(crate) state: u64,
+    pub(crate) arguments: u64,
+    pub(crate) record_count: u32,
+    pub(crate) triangle_capacity: u32,
 }

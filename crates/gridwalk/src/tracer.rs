@@ -3,11 +3,13 @@
 use std::ffi::CString;
 
 use ash::vk;
+use gridwalk_core::GeometryRecord;
+use gridwalk_core::geometry::MAX_GEOMETRIES;
 use gridwalk_core::kernel::Kernel;
 
 use crate::error::{Error, Result};
 use crate::kernels::*;
-use crate::plan::{self, Buffer, BuildInputs, Dispatch, Item, MAX_PUSH, Query, Step};
+use crate::plan::{self, Buffer, BuildInputs, Dispatch, Item, MAX_PUSH, Query, Source, Step};
 use crate::requirements;
 use crate::shape::Shape;
 use crate::sizes::{
@@ -80,6 +82,18 @@ pub struct Geometry {
 pub enum Input {
     /// One mesh, tightly packed.
     Mesh(Geometry),
+    /// Any number of geometries and instances, as records in device memory.
+    Records(Records),
+}
+
+/// Geometries that the device reads as records.
+#[derive(Clone, Copy, Debug)]
+pub struct Records {
+    /// [`gridwalk_core::GeometryRecord`]s, written before the build by the host or by a shader. Their triangles are numbered one record after
+    /// another; those beyond the capacity are left out and reported ([`gridwalk_core::Report::triangles_overflowed`]).
+    pub records: Region,
+    /// How many: at most [`crate::MAX_GEOMETRIES`], and at most the capacity of triangles. A record without a triangle is allowed.
+    pub count: u32,
 }
 
 impl From<Geometry> for Input {
@@ -356,12 +370,11 @@ impl Tracer {
         let grid = GridLayout::new(capacity).size;
         let scratch = ScratchLayout::new(capacity, &self.shape).size;
         let none = vk::BufferUsageFlags::empty();
-        let inputs = BuildInputs { triangle_count: 0, vertex_count: 0, density: 1.0, resolution: None, exact: false };
         Ok(BuildSizes {
             grid: sizes::region_size("grid", grid, limit, none)?,
             scratch: sizes::region_size("scratch", scratch, limit, vk::BufferUsageFlags::INDIRECT_BUFFER)?,
             report: sizes::region_size("report", REPORT_SIZE, limit, none)?,
-            timestamp_count: plan::build_plan(capacity, &inputs, &self.shape).steps().count() as u32 + 1,
+            timestamp_count: self.build_steps(capacity).len() as u32 + 1,
         })
     }
 
@@ -381,9 +394,11 @@ impl Tracer {
         sizes::region_size("trace scratch", TraceLayout::new(max_rays).size, self.max_buffer_size, vk::BufferUsageFlags::INDIRECT_BUFFER)
     }
 
-    /// The steps of a build, in order of its timestamps: step i runs between timestamps i and i + 1.
+    /// The steps of a build, in order of its timestamps: step i runs between timestamps i and i + 1. A build of records runs `geometry_scan`
+    /// and `gather_records` in place of the first, `gather`.
     pub fn build_steps(&self, capacity: &Capacity) -> Vec<&'static Kernel> {
-        let inputs = BuildInputs { triangle_count: 0, vertex_count: 0, density: 1.0, resolution: None, exact: false };
+        let source = Source::Mesh { triangle_count: 0, vertex_count: 0 };
+        let inputs = BuildInputs { source, density: 1.0, resolution: None, exact: false };
         plan::build_plan(capacity, &inputs, &self.shape).steps().map(|step| step.kernel).collect()
     }
 
@@ -401,11 +416,8 @@ impl Tracer {
     /// device, do not overlap, and live until the command buffer has been executed; scratch's buffer has usage `INDIRECT_BUFFER`. With
     /// timestamps: the queue has them, and the pool holds enough queries from the first on.
     pub unsafe fn cmd_build(&self, cmd: vk::CommandBuffer, info: &BuildInfo) -> Result<()> {
-        let BuildInfo { input: Input::Mesh(geometry), capacity, options, .. } = info;
+        let BuildInfo { input, capacity, options, .. } = info;
         sizes::check_capacity(capacity)?;
-        if geometry.triangle_count > capacity.triangles {
-            return Err(Error::Capacity { what: "triangles", given: geometry.triangle_count.into(), limit: capacity.triangles.into() });
-        }
         if !(options.density > 0.0 && options.density.is_finite()) {
             return Err(Error::Option { option: "density", value: options.density.to_string(), expected: "a finite number above 0" });
         }
@@ -416,24 +428,15 @@ impl Tracer {
                 expected: "at least one cell along each axis",
             });
         }
-        if geometry.vertex_count > MAX_VERTICES {
-            return Err(Error::Capacity { what: "vertices", given: geometry.vertex_count.into(), limit: MAX_VERTICES.into() });
-        }
+        let source = check_input(input, capacity)?;
         let grid = GridLayout::new(capacity);
         let scratch = ScratchLayout::new(capacity, &self.shape);
         check_region("grid", &info.grid, grid.size, REGION_ALIGNMENT)?;
         check_region("scratch", &info.scratch, scratch.size, REGION_ALIGNMENT)?;
         check_indirect("scratch", &info.scratch)?;
         check_region("report", &info.report, REPORT_SIZE, REGION_ALIGNMENT)?;
-        check_region("positions", &geometry.positions, u64::from(geometry.vertex_count) * 12, 4)?;
-        check_region("indices", &geometry.indices, u64::from(geometry.triangle_count) * 12, 4)?;
-        let inputs = BuildInputs {
-            triangle_count: geometry.triangle_count,
-            vertex_count: geometry.vertex_count,
-            density: options.density,
-            resolution: options.resolution,
-            exact: options.overlap == Overlap::Exact,
-        };
+        let inputs =
+            BuildInputs { source, density: options.density, resolution: options.resolution, exact: options.overlap == Overlap::Exact };
         let plan = plan::build_plan(capacity, &inputs, &self.shape);
         // SAFETY: the caller's contract; the plan stays inside of the regions that were checked above.
         unsafe { self.record(cmd, plan.items(), |buffer| self.build_region(info, buffer), info.timestamps) };
@@ -447,10 +450,14 @@ impl Tracer {
         let scratch = ScratchLayout::new(&info.capacity, &self.shape);
         let in_grid = |part: sizes::Part| info.grid.part(part.offset, part.size);
         let in_scratch = |part: sizes::Part| info.scratch.part(part.offset, part.size);
-        let Input::Mesh(geometry) = info.input;
+        let (positions, indices, records) = match info.input {
+            Input::Mesh(geometry) => (geometry.positions, geometry.indices, Region::NONE),
+            Input::Records(Records { records, .. }) => (Region::NONE, Region::NONE, records),
+        };
         match buffer {
-            Buffer::Positions => geometry.positions,
-            Buffer::Indices => geometry.indices,
+            Buffer::Positions => positions,
+            Buffer::Indices => indices,
+            Buffer::Records => records,
             Buffer::Report => info.report,
             Buffer::Header => in_grid(grid.header),
             Buffer::Cells => in_grid(grid.cells),
@@ -641,7 +648,7 @@ impl Tracer {
             }
         };
         if let Some(timestamps) = timestamps {
-            let count = items.iter().filter(|item| matches!(item, Item::Step(_))).count() as u32 + 1;
+            let count = items.iter().filter(|item| is_stamped(item)).count() as u32 + 1;
             // SAFETY: as above.
             unsafe { self.device.cmd_reset_query_pool(cmd, timestamps.pool, timestamps.first_query, count) };
         }
@@ -651,7 +658,9 @@ impl Tracer {
                 Item::Step(step) => {
                     // SAFETY: the caller's contract.
                     unsafe { self.record_step(cmd, step, &region) };
-                    stamp();
+                    if is_stamped(item) {
+                        stamp();
+                    }
                 }
                 Item::Barrier(barrier) => {
                     let after = match barrier {
@@ -701,6 +710,34 @@ impl Drop for Tracer {
             self.device.destroy_pipeline_layout(self.layout, None);
         }
     }
+}
+
+/// What the plan needs to know of the input, if it fits.
+fn check_input(input: &Input, capacity: &Capacity) -> Result<Source> {
+    let at_most = |what, given: u32, limit: u32| match given > limit {
+        true => Err(Error::Capacity { what, given: given.into(), limit: limit.into() }),
+        false => Ok(()),
+    };
+    match *input {
+        Input::Mesh(Geometry { positions, vertex_count, indices, triangle_count }) => {
+            at_most("triangles", triangle_count, capacity.triangles)?;
+            at_most("vertices", vertex_count, MAX_VERTICES)?;
+            check_region("positions", &positions, u64::from(vertex_count) * 12, 4)?;
+            check_region("indices", &indices, u64::from(triangle_count) * 12, 4)?;
+            Ok(Source::Mesh { triangle_count, vertex_count })
+        }
+        Input::Records(Records { records, count }) => {
+            at_most("geometries", count, capacity.triangles.min(MAX_GEOMETRIES))?;
+            check_region("records", &records, u64::from(count) * size_of::<GeometryRecord>() as u64, 16)?;
+            Ok(Source::Records { record_count: count })
+        }
+    }
+}
+
+/// Whether a timestamp is written behind an item: so that all builds have the same timestamps, finding the first triangles of geometries
+/// counts with gathering the triangles.
+fn is_stamped(item: &Item) -> bool {
+    matches!(item, Item::Step(step) if !std::ptr::eq(step.kernel, &GEOMETRY_SCAN))
 }
 
 fn check_region(name: &'static str, region: &Region, size: u64, alignment: u64) -> Result<()> {

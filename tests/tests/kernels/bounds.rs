@@ -1,29 +1,30 @@
 use bytemuck::Zeroable;
 use gridwalk::kernels::{BOUNDS_REDUCE, BOUNDS_SPINE};
 use gridwalk::split_workgroups;
+use gridwalk_core::gather::gathered_state;
 use gridwalk_core::layout::Bounds;
 use gridwalk_core::twin::bounds_reduce::bounds_reduce;
 use gridwalk_core::twin::bounds_spine::bounds_spine;
 use gridwalk_tests::gpu::{Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
 
-use super::{TINY, assert_same, devices, many_groups, sizes};
+use super::{TINY, assert_same, devices, gathered, many_groups, sizes};
 
 fn check(gpu: &Gpu, mesh: &Mesh, what: &str) {
     let shape = gpu.tracer.shape();
-    let (vertices, triangles) = (mesh.positions.len() as u32, mesh.indices.len() as u32);
+    let triangles = mesh.indices.len() as u32;
     let tiles = shape.bounds_tiles(triangles);
-    let positions = gpu.upload("positions", &mesh.positions);
-    let indices = gpu.upload("indices", &mesh.indices);
+    let words = gathered(mesh);
+    let state = gpu.upload("state", &[gathered_state(triangles, triangles)]);
+    let device_triangles = gpu.upload("triangles", &words);
     let partials = gpu.guarded("partials", 32 * u64::from(tiles));
     let scene = gpu.guarded("scene", 32);
-    gpu.launch(&BOUNDS_REDUCE, 0, &[&positions, &indices, &partials], &[vertices, triangles], split_workgroups(tiles));
-    gpu.launch(&BOUNDS_SPINE, 0, &[&partials, &scene], &[tiles], [1, 1, 1]);
+    gpu.launch(&BOUNDS_REDUCE, 0, &[&state, &device_triangles, &partials], &[], split_workgroups(tiles));
+    gpu.launch(&BOUNDS_SPINE, 0, &[&state, &partials, &scene], &[], [1, 1, 1]);
 
     let mut expected = vec![Bounds::zeroed(); tiles as usize];
     let groups = split_workgroups(tiles);
-    let (positions, indices) = (bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices));
-    bounds_reduce(&shape, groups, positions, indices, &mut expected, vertices, triangles);
+    bounds_reduce(&shape, groups, triangles, &words, &mut expected);
     assert_same(&format!("{what}: partials"), &partials.read::<Bounds>(0, tiles as usize), &expected);
     let mut whole = Bounds::EMPTY;
     bounds_spine(&expected, &mut whole, tiles);

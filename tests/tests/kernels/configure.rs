@@ -1,6 +1,7 @@
 use bytemuck::Zeroable;
 use gridwalk::Report;
 use gridwalk::kernels::CONFIGURE;
+use gridwalk_core::gather::gathered_state;
 use gridwalk_core::grid::boundary;
 use gridwalk_core::layout::{Bounds, BuildState, DispatchArguments, GridHeader, OVERFLOW_CELLS};
 use gridwalk_core::twin::configure::{Configure, PAD, configure_header, configure_state};
@@ -31,7 +32,9 @@ fn check(gpu: &Gpu, info: Configure, scene: Bounds, what: &str) -> GridHeader {
     let shape = gpu.tracer.shape();
     let device_scene = gpu.upload("scene", &[scene]);
     let grid = gpu.guarded("grid", size_of::<GridHeader>() as u64);
-    let mut state = BuildState::zeroed();
+    // More than fit, now and then.
+    let total = info.triangle_count + u32::from(info.exact);
+    let mut state = gathered_state(info.triangle_count, total);
     let mut arguments = DispatchArguments::zeroed();
     let mut report = Report::zeroed();
     let device_state = gpu.upload("state", &[state]);
@@ -41,7 +44,7 @@ fn check(gpu: &Gpu, info: Configure, scene: Bounds, what: &str) -> GridHeader {
     let [a, b, c, d] = &parts;
     let memory = [&device_scene, &grid, &device_state, &device_arguments, &device_report, a, b, c, d];
     let [x, y, z] = info.fixed;
-    let words = [info.triangle_count, info.cell_capacity, info.density.to_bits(), x, y, z, info.exact.into()];
+    let words = [info.cell_capacity, info.density.to_bits(), x, y, z, info.exact.into()];
     gpu.launch(&CONFIGURE, 0, &memory, &words, [1, 1, 1]);
 
     let what = format!("{what}: {info:?} {scene:?}");

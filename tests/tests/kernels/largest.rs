@@ -4,6 +4,7 @@
 use bytemuck::Zeroable;
 use gridwalk::kernels::{BOUNDS_SPINE, REPORT_SPINE, SCAN_SPINE};
 use gridwalk::{MAX_PAIRS, MAX_TRIANGLES, Report, Shape};
+use gridwalk_core::gather::gathered_state;
 use gridwalk_core::grid::brick_resolution;
 use gridwalk_core::layout::{Bounds, BuildState, GridHeader};
 use gridwalk_core::twin::bounds_spine::bounds_spine;
@@ -46,7 +47,8 @@ fn the_largest_scene_box() {
         let boxes: Vec<Bounds> = (0..count).map(|i| Bounds { low: corner(), dropped: i % 3, high: corner(), reserved: 0 }).collect();
         let partials = gpu.upload("partials", &boxes);
         let scene = gpu.guarded("scene", 32);
-        gpu.launch(&BOUNDS_SPINE, 0, &[&partials, &scene], &[count], [1, 1, 1]);
+        let state = gpu.upload("state", &[gathered_state(MAX_TRIANGLES, MAX_TRIANGLES)]);
+        gpu.launch(&BOUNDS_SPINE, 0, &[&state, &partials, &scene], &[], [1, 1, 1]);
         let mut expected = Bounds::EMPTY;
         bounds_spine(&boxes, &mut expected, count);
         assert_same(&format!("{count} tiles, {shape:?}"), &scene.read::<Bounds>(0, 1), &[expected]);

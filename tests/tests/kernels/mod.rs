@@ -5,6 +5,7 @@ mod bricks;
 mod cell_ranges;
 mod clear_cells;
 mod configure;
+mod gather;
 mod largest;
 mod overlap;
 mod pair_args;
@@ -13,8 +14,9 @@ mod sort;
 mod steps;
 
 use gridwalk::Shape;
-use gridwalk_core::layout::{Bounds, GridHeader};
+use gridwalk_core::layout::{Bounds, BuildState, GridHeader};
 use gridwalk_core::twin::configure::{Configure, configure_header};
+use gridwalk_core::twin::gather::gather;
 use gridwalk_tests::gpu::{CANARY, Gpu, Mesh};
 
 /// Neither round numbers nor the defaults.
@@ -76,6 +78,17 @@ pub fn assert_same<T: PartialEq + std::fmt::Debug>(what: &str, device: &[T], twi
 /// A buffer that no kernel has written.
 pub fn untouched(len: usize) -> Vec<u32> {
     vec![CANARY; len]
+}
+
+/// The triangles of a mesh as `gather` leaves them.
+pub fn gathered(mesh: &Mesh) -> Vec<[f32; 4]> {
+    let count = mesh.indices.len() as u32;
+    let mut triangles = vec![[0.0; 4]; 3 * count as usize];
+    let (positions, indices) = (bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices));
+    let groups = gridwalk::split_workgroups(count.div_ceil(Shape::GPU.map_size));
+    let vertices = mesh.positions.len() as u32;
+    gather(&Shape::GPU, groups, positions, indices, &mut triangles, &mut BuildState::default(), vertices, count);
+    triangles
 }
 
 /// The header that the twin makes for a mesh: good enough to test later steps, and the same for device and twin.

@@ -1,6 +1,7 @@
 use gridwalk::Shape;
 use gridwalk::kernels::{OVERLAP_COUNT, OVERLAP_EMIT};
 use gridwalk_core::dispatch::split_workgroups;
+use gridwalk_core::gather::gathered_state;
 use gridwalk_core::layout::{BuildState, GridHeader};
 use gridwalk_core::overlap::triangle_overlaps_cell;
 use gridwalk_core::sort::writes_a;
@@ -13,23 +14,21 @@ use gridwalk_tests::random::Random;
 
 use crate::rebuild::invariants::{cell_box, overlaps};
 
-use super::{TINY, assert_same, devices, header, many_groups, sizes, untouched};
+use super::{TINY, assert_same, devices, gathered, header, many_groups, sizes, untouched};
 
 /// Counts on the device and compares; returns triangles and offsets.
 fn count(gpu: &Gpu, mesh: &Mesh, header: &GridHeader, what: &str) -> (Vec<[f32; 4]>, Vec<u32>) {
     let shape = gpu.tracer.shape();
-    let (vertices, triangles) = (mesh.positions.len() as u32, mesh.indices.len() as u32);
+    let triangles = mesh.indices.len() as u32;
+    let mut expected = gathered(mesh);
     let grid = gpu.upload("grid", &[*header]);
-    let positions = gpu.upload("positions", &mesh.positions);
-    let indices = gpu.upload("indices", &mesh.indices);
-    let moved = gpu.guarded("triangles", 48 * u64::from(triangles.max(1)));
+    let state = gpu.upload("state", &[gathered_state(triangles, triangles)]);
+    let moved = gpu.upload("triangles", &expected);
     let counts = gpu.guarded("counts", 4 * (u64::from(triangles) + 1));
     let groups = split_workgroups(triangles + 1, shape.map_size);
-    gpu.launch(&OVERLAP_COUNT, 0, &[&grid, &positions, &indices, &moved, &counts], &[vertices, triangles], groups);
-    let mut expected = vec![[0.0; 4]; 3 * triangles as usize];
+    gpu.launch(&OVERLAP_COUNT, 0, &[&grid, &state, &moved, &counts], &[], groups);
     let mut expected_counts = untouched(triangles as usize + 1);
-    let (positions, indices) = (bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices));
-    overlap_count(&shape, groups, header, positions, indices, &mut expected, &mut expected_counts, vertices, triangles);
+    overlap_count(&shape, groups, header, triangles, &mut expected, &mut expected_counts);
     assert_same(&format!("{what}: counts"), &counts.read::<u32>(0, expected_counts.len()), &expected_counts);
     let found: Vec<u32> = moved.read(0, 4 * expected.len());
     assert_same(&format!("{what}: triangles"), &found, bytemuck::cast_slice(&expected));

@@ -1,14 +1,15 @@
 //! Whole builds, a step at a time: each buffer after each step is the player's.
 
 use bytemuck::bytes_of;
-use gridwalk::plan::{Buffer, BuildInputs, Dispatch, Item, Step, build_plan};
-use gridwalk::{BuildOptions, Capacity, Overlap, Report};
+use gridwalk::plan::{Buffer, BuildInputs, Dispatch, Item, Source, Step, build_plan};
+use gridwalk::{BuildInfo, BuildOptions, Capacity, GeometryRecord, Overlap, Report};
 use gridwalk_core::layout::{BuildState, DispatchArguments, GridHeader};
 use gridwalk_core::twin::player::{Groups, Memory, PlayedStep};
 use gridwalk_tests::gpu::{Built, CANARY, Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
 
 use super::devices;
+use crate::rebuild::records::{Scene, placed};
 
 const COMPARED: [Buffer; 18] = [
     Buffer::Header,
@@ -100,37 +101,39 @@ fn played<'a>(step: &Step, words: &'a [u32]) -> PlayedStep<'a> {
 
 /// Runs a build a step at a time and names the first step after which a buffer is not the player's.
 fn first_wrong_step(gpu: &Gpu, mesh: &Mesh, capacity: Capacity, options: BuildOptions, spoiled: Option<&str>) -> Option<String> {
-    let shape = gpu.tracer.shape();
     let built = gpu.prepare(mesh, capacity, options);
-    let inputs = BuildInputs {
-        triangle_count: mesh.indices.len() as u32,
-        vertex_count: mesh.positions.len() as u32,
-        density: options.density,
-        resolution: options.resolution,
-        exact: options.overlap == Overlap::Exact,
-    };
-    let plan = build_plan(&capacity, &inputs, &shape);
-    let bricks = gpu.tracer.build_region(&built.info, Buffer::Bricks).size / 16;
     let positions = mesh.positions.iter().flatten().copied().collect();
     let indices = mesh.indices.iter().flatten().copied().collect();
+    let source = Source::Mesh { triangle_count: mesh.indices.len() as u32, vertex_count: mesh.positions.len() as u32 };
+    first_wrong_step_of(gpu, &built, source, spoiled, |memory| (memory.positions, memory.indices) = (positions, indices))
+}
+
+/// Likewise, of a build that is prepared; `given` puts its input into the player's memory.
+fn first_wrong_step_of(gpu: &Gpu, built: &Built, source: Source, spoiled: Option<&str>, given: impl FnOnce(&mut Memory)) -> Option<String> {
+    let shape = gpu.tracer.shape();
+    let BuildInfo { capacity, options, .. } = built.info;
+    let inputs = BuildInputs { source, density: options.density, resolution: options.resolution, exact: options.overlap == Overlap::Exact };
+    let plan = build_plan(&capacity, &inputs, &shape);
+    let bricks = gpu.tracer.build_region(&built.info, Buffer::Bricks).size / 16;
     let sizes = [capacity.triangles, capacity.cells, capacity.pairs, bricks as u32];
-    let mut memory = Memory::filled(CANARY, &shape, positions, indices, sizes);
+    let mut memory = Memory::filled(CANARY, &shape, Vec::new(), Vec::new(), sizes);
+    given(&mut memory);
     let addresses = [Buffer::Cells, Buffer::References, Buffer::Triangles, Buffer::Bricks].map(|buffer| {
         let address = gpu.tracer.build_region(&built.info, buffer).address;
         [address as u32, (address >> 32) as u32]
     });
     for (index, item) in plan.items().iter().enumerate() {
         let Item::Step(step) = item else { continue };
-        gpu.run_item(&built, item);
+        gpu.run_item(built, item);
         let words = step.words();
         memory.play(&shape, &played(step, &words), addresses).unwrap();
         if step.kernel.name == "configure" {
-            adopt(gpu, &built, &mut memory);
+            adopt(gpu, built, &mut memory);
         }
         if spoiled == Some(step.kernel.name) {
             memory.offsets[1] ^= 1;
         }
-        let wrong = COMPARED.into_iter().chain([Buffer::Report]).find_map(|buffer| first_difference(gpu, &built, &memory, buffer));
+        let wrong = COMPARED.into_iter().chain([Buffer::Report]).find_map(|buffer| first_difference(gpu, built, &memory, buffer));
         if let Some(wrong) = wrong {
             return Some(format!("step {index}, {}: {wrong}", step.kernel.name));
         }
@@ -172,6 +175,37 @@ fn every_step_of_special_builds_is_the_players() {
         for overlap in [Overlap::Box, Overlap::Exact] {
             let wrong = first_wrong_step(gpu, &mesh, capacity, BuildOptions { overlap, ..options }, None);
             assert_eq!(wrong, None, "{name}, {overlap:?}");
+        }
+    }
+}
+
+#[test]
+fn every_step_of_a_build_of_records_is_the_players() {
+    for gpu in devices() {
+        let mut scene = Scene::new();
+        let mut mesh = soup(700, 0.1, 24);
+        spoil(&mut mesh, 50, 25);
+        let record = scene.mesh(gpu, &mesh);
+        let count = scene.words(gpu, vec![33]);
+        scene.records = (0..20)
+            .map(|i| GeometryRecord {
+                transform: placed(i as f32, 0.5, [i as f32, 0.0, 1.0]),
+                count: if i % 3 == 0 { count } else { 0 },
+                triangle_count: if i == 7 { 0 } else { record.triangle_count },
+                flags: i % 4,
+                id: i,
+                ..record
+            })
+            .collect();
+        // The last two have too little room, of triangles and of pairs.
+        for (triangles, pairs) in [(20_000, 100_000), (5_000, 100_000), (9_000, 7_777)] {
+            let capacity = Capacity { triangles, cells: 20_000, pairs };
+            let (built, _records) = scene.prepare(gpu, capacity, BuildOptions { density: 1.0, ..BuildOptions::default() });
+            let source = Source::Records { record_count: scene.records.len() as u32 };
+            let wrong = first_wrong_step_of(gpu, &built, source, None, |memory| {
+                (memory.records, memory.addressed) = (scene.records.clone(), scene.memory.clone());
+            });
+            assert_eq!(wrong, None, "{capacity:?} {:?}", gpu.tracer.shape());
         }
     }
 }

@@ -3,6 +3,7 @@
 use gridwalk::plan::Buffer;
 use gridwalk::{BuildOptions, Overlap, Shape};
 use gridwalk_core::dispatch::split_workgroups;
+use gridwalk_core::gather::is_dropped;
 use gridwalk_core::grid::{brick_resolution, cell_id, cell_of};
 use gridwalk_core::layout::{Brick, GridHeader};
 use gridwalk_core::twin::brick_distance_x::brick_distance_x;
@@ -111,7 +112,7 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
                 (0..3).all(|i| found[i] == v[corner][i] || found[i] == 0.0 && flushed_or_same(0.0, v[corner][i] * header.inverse_scale));
             require!(same, "triangle {index} is {found:?} where {v:?} is expected");
         }
-        require!((found[0][3] == 1.0) == expected.is_none(), "triangle {index}: mark of a dropped triangle");
+        require!(is_dropped(found[0]) == expected.is_none(), "triangle {index}: mark of a dropped triangle");
         if expected.is_some() {
             let input = mesh.triangle(index);
             low = input.into_iter().fold(low, gridwalk_core::vector::min);

@@ -6,3 +6,4 @@ mod hostile;
 pub mod invariants;
 mod overflow;
 mod plan;
+pub mod records;

@@ -10,11 +10,11 @@ use super::invariants::check;
 /// What of a grid does not depend on where it lies.
 #[derive(PartialEq)]
 pub struct Contents {
-    cells: Vec<[u32; 2]>,
-    references: Vec<u32>,
-    /// Bits of the vertices.
-    triangles: Vec<u32>,
-    bricks: Vec<[u32; 4]>,
+    pub cells: Vec<[u32; 2]>,
+    pub references: Vec<u32>,
+    /// Bits of the vertices, and the words beside them.
+    pub triangles: Vec<u32>,
+    pub bricks: Vec<[u32; 4]>,
 }
 
 pub fn contents(gpu: &Gpu, built: &Built) -> Contents {

@@ -1,7 +1,7 @@
 //! Plans as data: every barrier is needed, and none is missing.
 
 use gridwalk::hazard::{HazardKind, find_hazard, find_hazard_in};
-use gridwalk::plan::{Barrier, BuildInputs, CONTINUATIONS, Dispatch, Item, Plan, Query, build_plan, trace_plan};
+use gridwalk::plan::{Barrier, BuildInputs, CONTINUATIONS, Dispatch, Item, Plan, Query, Source, build_plan, trace_plan};
 use gridwalk::{Capacity, Shape};
 
 use crate::kernels::{ODD, TINY};
@@ -13,9 +13,11 @@ fn builds() -> Vec<(String, Plan)> {
     for shape in SHAPES {
         // Every number of digits.
         for bits in 0..=28 {
-            for (triangle_count, exact) in [(0, false), (1, true), (1_000_000, false)] {
-                let capacity = Capacity { triangles: triangle_count, cells: 1 << bits, pairs: 1_000 };
-                let inputs = BuildInputs { triangle_count, vertex_count: 3, density: 8.0, resolution: None, exact };
+            let mesh = |triangle_count| Source::Mesh { triangle_count, vertex_count: 3 };
+            let records = Source::Records { record_count: 7 };
+            for (source, exact) in [(mesh(0), false), (mesh(1), true), (mesh(1_000_000), false), (records, true)] {
+                let capacity = Capacity { triangles: 1_000_000, cells: 1 << bits, pairs: 1_000 };
+                let inputs = BuildInputs { source, density: 8.0, resolution: None, exact };
                 plans.push((format!("2^{bits} cells, {inputs:?}, {shape:?}"), build_plan(&capacity, &inputs, &shape)));
             }
         }
@@ -49,7 +51,7 @@ fn plans_have_no_hazard() {
         assert_eq!(find_hazard([build]), None, "{name}");
     }
     for (name, trace) in &traces {
-        for (_, build) in &builds[..3] {
+        for (_, build) in &builds[..4] {
             assert_eq!(find_hazard([build, trace, build]), None, "{name}");
         }
     }
@@ -77,13 +79,13 @@ fn hazards_are_named() {
     let (_, plan) = &builds()[0];
     let steps: Vec<Item> = plan.items().iter().copied().filter(|item| matches!(item, Item::Step(_))).collect();
     let hazard = find_hazard_in(&steps).unwrap();
-    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "bounds_spine", HazardKind::ReadAfterWrite));
+    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "bounds_reduce", HazardKind::ReadAfterWrite));
     // The same step twice writes twice.
     let hazard = find_hazard_in(&[steps[0], steps[0]]).unwrap();
     assert_eq!((hazard.item, hazard.kind), (1, HazardKind::WriteAfterWrite));
     // Its reader before its writer.
     let hazard = find_hazard_in(&[steps[1], steps[0]]).unwrap();
-    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "bounds_reduce", HazardKind::WriteAfterRead));
+    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "gather", HazardKind::WriteAfterRead));
 }
 
 /// Digits of the capacity decide how many passes are recorded; indirect steps take their arguments from the build's.
@@ -92,7 +94,8 @@ fn plans_have_the_passes_of_their_capacity() {
     for shape in SHAPES {
         for bits in 0..=28u32 {
             let capacity = Capacity { triangles: 1, cells: 1 << bits, pairs: 1 };
-            let inputs = BuildInputs { triangle_count: 1, vertex_count: 3, density: 8.0, resolution: None, exact: true };
+            let inputs =
+                BuildInputs { source: Source::Mesh { triangle_count: 1, vertex_count: 3 }, density: 8.0, resolution: None, exact: true };
             let plan = build_plan(&capacity, &inputs, &shape);
             let scatters = plan.steps().filter(|step| step.kernel.name == "sort_scatter").count() as u32;
             // The sentinel is the number of cells itself, which takes a bit more.

@@ -153,7 +153,8 @@ pub fn configure_header(info: &Configure, scene: &Bounds, addresses: [[u32; 2]; 
     (header, density, overflow)
 }
 
-/// State, arguments and report as they follow from the header; of the arguments and the report only what the kernel writes.
+/// State, arguments and report as they follow from the header and from what the state was; of the arguments and the report only what the
+/// kernel writes.
 #[allow(clippy::too_many_arguments, reason = "what the kernel writes")]
 pub fn configure_state(
     shape: &Shape,
@@ -168,14 +169,8 @@ pub fn configure_state(
 ) {
     let largest_key = if info.exact { header.cell_count } else { header.cell_count - 1 };
     let key_bits = 32 - largest_key.leading_zeros();
-    *state = BuildState {
-        triangle_count: info.triangle_count,
-        offset_count: info.triangle_count + 1,
-        key_bits,
-        pass_count: key_bits.div_ceil(shape.sort_bits),
-        overflow,
-        ..BuildState::default()
-    };
+    let overflow = state.overflow | overflow;
+    *state = BuildState { key_bits, pass_count: key_bits.div_ceil(shape.sort_bits), overflow, ..*state };
     arguments.clear_cells = four(split_workgroups(header.cell_count.div_ceil(CELLS_EACH), shape.map_size));
     let bricks = brick_resolution(header.resolution).iter().product();
     arguments.brick_reduce = four(split_workgroups(bricks, shape.brick_tile()));
@@ -195,6 +190,6 @@ pub fn configure_state(
         box_min: if empty { [0.0; 3] } else { scene.low },
         density,
         box_max: if empty { [0.0; 3] } else { scene.high },
-        reserved: 0,
+        triangle_total: state.triangle_total,
     };
 }

@@ -1,39 +1,35 @@
 //! Twin of kernel `overlap_count`.
 
 use crate::dispatch::workgroups;
-use crate::gather::gather_triangle;
+use crate::gather::is_dropped;
 use crate::layout::GridHeader;
 use crate::overlap::triangle_cells;
 use crate::shape::Shape;
+use crate::vector::Vec3;
 
 /// Brings triangles into the grid's frame and counts the cells that their boxes overlap; the entry after the last triangle is zero.
-#[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn overlap_count(
     shape: &Shape,
     groups: [u32; 3],
     grid: &GridHeader,
-    positions: &[f32],
-    indices: &[u32],
+    triangle_count: u32,
     triangles: &mut [[f32; 4]],
     counts: &mut [u32],
-    vertex_count: u32,
-    triangle_count: u32,
 ) {
     let invocations = workgroups(groups).flat_map(|group| group * shape.map_size..(group + 1) * shape.map_size);
     for triangle in invocations.filter(|triangle| *triangle <= triangle_count) {
-        if triangle == triangle_count {
-            counts[triangle as usize] = 0;
+        counts[triangle as usize] = 0;
+        let first = 3 * triangle as usize;
+        if triangle == triangle_count || is_dropped(triangles[first]) {
             continue;
         }
-        let gathered = gather_triangle(positions, indices, vertex_count, triangle);
-        let v = gathered.map_or([[0.0; 3]; 3], |v| v.map(|vertex| grid.to_frame(vertex)));
-        counts[triangle as usize] = gathered.map_or(0, |_| {
-            let [x, y, z] = triangle_cells(grid, v).size();
-            x * y * z
+        let v: [Vec3; 3] = std::array::from_fn(|corner| {
+            let [x, y, z, word] = triangles[first + corner];
+            let [x, y, z] = grid.to_frame([x, y, z]);
+            triangles[first + corner] = [x, y, z, word];
+            [x, y, z]
         });
-        for (i, [x, y, z]) in v.into_iter().enumerate() {
-            let fourth = if i == 0 && gathered.is_none() { 1.0 } else { 0.0 };
-            triangles[3 * triangle as usize + i] = [x, y, z, fourth];
-        }
+        let [x, y, z] = triangle_cells(grid, v).size();
+        counts[triangle as usize] = x * y * z;
     }
 }

@@ -11,6 +11,9 @@ use super::brick_reduce::brick_reduce;
 use super::cell_ranges::cell_ranges;
 use super::clear_cells::{CELLS_EACH, clear_cells};
 use super::configure::{Configure, configure_header, configure_state};
+use super::gather::gather;
+use super::gather_records::gather_records;
+use super::geometry_scan::geometry_scan;
 use super::overlap_count::overlap_count;
 use super::overlap_emit::overlap_emit;
 use super::pair_args::pair_args;
@@ -20,6 +23,7 @@ use super::scan_reduce::scan_reduce;
 use super::scan_spine::scan_spine;
 use super::sort_histogram::sort_histogram;
 use super::sort_scatter::{Pairs, sort_scatter};
+use crate::geometry::{AddressedMemory, GeometryRecord};
 use crate::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, Report};
 use crate::shape::Shape;
 use crate::sort::writes_a;
@@ -52,6 +56,9 @@ pub struct PlayedStep<'a> {
 pub struct Memory {
     pub positions: Vec<f32>,
     pub indices: Vec<u32>,
+    /// Geometries, if the build is of such, and the memory that they name.
+    pub records: Vec<GeometryRecord>,
+    pub addressed: AddressedMemory,
     pub header: GridHeader,
     pub cells: Vec<[u32; 2]>,
     pub references: Vec<u32>,
@@ -90,6 +97,8 @@ impl Memory {
         Memory {
             positions,
             indices,
+            records: Vec::new(),
+            addressed: AddressedMemory::default(),
             header: filled(word),
             cells: vec![[word; 2]; cells.next_multiple_of(CELLS_EACH) as usize],
             references: vec![word; pairs],
@@ -131,19 +140,29 @@ impl Memory {
         }
         let words = step.words;
         let GridHeader { cell_count, resolution, .. } = self.header;
-        let pair_count = self.state.pair_count;
+        let BuildState { triangle_count, pair_count, .. } = self.state;
         match step.kernel {
-            "bounds_reduce" => {
-                bounds_reduce(shape, groups, &self.positions, &self.indices, &mut self.bounds_partials, words[0], words[1]);
+            "gather" => {
+                let (triangles, state) = (&mut self.triangles, &mut self.state);
+                gather(shape, groups, &self.positions, &self.indices, triangles, state, words[0], words[1]);
             }
-            "bounds_spine" => bounds_spine(&self.bounds_partials, &mut self.scene_bounds, words[0]),
+            "geometry_scan" => {
+                let (state, arguments) = (&mut self.state, &mut self.arguments);
+                geometry_scan(shape, &self.addressed, &self.records, &mut self.offsets, state, arguments, words[1]);
+            }
+            "gather_records" => {
+                let (firsts, triangles) = (&self.offsets, &mut self.triangles);
+                gather_records(shape, groups, &self.addressed, &self.records, firsts, triangle_count, triangles);
+            }
+            "bounds_reduce" => bounds_reduce(shape, groups, triangle_count, &self.triangles, &mut self.bounds_partials),
+            "bounds_spine" => bounds_spine(&self.bounds_partials, &mut self.scene_bounds, shape.bounds_tiles(triangle_count)),
             "configure" => {
                 let info = Configure {
-                    triangle_count: words[0],
-                    cell_capacity: words[1],
-                    density: f32::from_bits(words[2]),
-                    fixed: [words[3], words[4], words[5]],
-                    exact: words[6] != 0,
+                    triangle_count,
+                    cell_capacity: words[0],
+                    density: f32::from_bits(words[1]),
+                    fixed: [words[2], words[3], words[4]],
+                    exact: words[5] != 0,
                 };
                 let (header, density, overflow) = configure_header(&info, &self.scene_bounds, addresses);
                 self.header = header;
@@ -152,8 +171,7 @@ impl Memory {
             }
             "clear_cells" => clear_cells(shape, groups, cell_count, &mut self.cells),
             "overlap_count" => {
-                let (triangles, counts) = (&mut self.triangles, &mut self.offsets);
-                overlap_count(shape, groups, &self.header, &self.positions, &self.indices, triangles, counts, words[0], words[1]);
+                overlap_count(shape, groups, &self.header, triangle_count, &mut self.triangles, &mut self.offsets);
             }
             "scan_reduce" | "scan_spine" | "scan_downsweep" => {
                 let (length, values) = match words[0] {
