@@ -5,6 +5,7 @@ mod animation;
 mod cli;
 mod image;
 mod kernels;
+mod package;
 mod rebuild;
 mod render;
 mod repository;

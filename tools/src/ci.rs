@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 
+use crate::api;
 use crate::drivers::{self, Environment};
 use crate::process::{self, Root};
 use crate::shaders;
@@ -40,13 +41,16 @@ enum Outcome {
 }
 
 /// The full test suite comes last, so that its closing line is the last thing before the summary.
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 13] = [
     Step { name: "format", about: "rustfmt has nothing to change", run: format },
     Step { name: "clippy", about: "no warning in any crate, test or tool", run: clippy },
     Step { name: "doc", about: "documentation builds without a warning", run: doc },
     Step { name: "shaders", about: "what is made from GLSL is as committed, compiled anew", run: check_shaders },
     Step { name: "clippy-shaders", about: "no warning in the shader tool", run: clippy_shaders },
     Step { name: "spirv-val", about: "every committed SPIR-V module is valid", run: spirv_val },
+    Step { name: "api", about: "the library's public interface is as kept in docs/api", run: check_api },
+    Step { name: "package", about: "each crate packs, and builds from its package", run: package },
+    Step { name: "cross", about: "everything compiles for Windows and macOS", run: cross },
     Step { name: "matrix", about: "lavapipe's vector widths and thread counts: the tests pass on each", run: matrix },
     Step { name: "pictures", about: "the same: four pictures are equal bit for bit", run: pictures },
     Step { name: "swiftshader", about: "the same tests and pictures pass on SwiftShader, under a current layer", run: swiftshader },
@@ -148,6 +152,41 @@ fn spirv_val(root: &Root) -> Result<Outcome> {
     }
     eprintln!("{count} modules are valid");
     Ok(Outcome::Passed)
+}
+
+fn check_api(root: &Root) -> Result<Outcome> {
+    if !api::installed() {
+        return Ok(Outcome::Skipped("cargo-public-api is not installed: cargo install --locked cargo-public-api".to_owned()));
+    }
+    api::check(root).map(|()| Outcome::Passed)
+}
+
+fn package(root: &Root) -> Result<Outcome> {
+    let mut command = cargo(root, &["package", "--offline", "--allow-dirty"]);
+    // All in crates/ are published, and nothing else: a test sees to it.
+    for folder in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
+        let manifest = folder?.path().join("Cargo.toml");
+        let text = fs::read_to_string(&manifest).with_context(|| format!("{}: cannot be read", manifest.display()))?;
+        let name = text.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'));
+        command.arg("--package").arg(name.with_context(|| format!("{}: no name", manifest.display()))?);
+    }
+    passed(&mut command)
+}
+
+/// Systems that nothing here can run on: that all compiles is all that is known of them.
+const TARGETS: [&str; 3] = ["x86_64-pc-windows-msvc", "x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
+
+fn cross(root: &Root) -> Result<Outcome> {
+    let sysroot = process::output(Command::new("rustc").args(["--print", "sysroot"]))?;
+    let libraries = Path::new(String::from_utf8_lossy(&sysroot).trim()).join("lib/rustlib");
+    let (here, missing): (Vec<&str>, Vec<&str>) = TARGETS.into_iter().partition(|target| libraries.join(target).join("lib").is_dir());
+    for target in here {
+        process::run(&mut cargo(root, &["check", "--workspace", "--exclude", "gridwalk-shaders", "--target", target]))?;
+    }
+    Ok(match missing[..] {
+        [] => Outcome::Passed,
+        _ => Outcome::Skipped(format!("no standard library of {0}: rustup target add {0}", missing.join(" "))),
+    })
 }
 
 fn test(root: &Root) -> Result<Outcome> {

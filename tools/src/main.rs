@@ -1,6 +1,7 @@
 //! `cargo tool`: the chores of this repository.
 #![forbid(unsafe_code)]
 
+mod api;
 mod apt;
 mod bless;
 mod ci;
@@ -41,6 +42,8 @@ enum Tool {
         /// Only tests whose name holds this
         filter: Option<String>,
     },
+    /// List the public interface of the library into docs/api/ (needs cargo-public-api)
+    Api,
     /// Scenes too large or not free enough to be committed
     Scenes {
         #[command(subcommand)]
@@ -103,6 +106,7 @@ fn run(tool: Tool) -> Result<ExitCode> {
         Tool::Shaders { options } => return process::pass(&mut shaders::command(&root, &options)?),
         Tool::Ci(arguments) => return ci::run(&root, &arguments),
         Tool::Bless { filter } => return bless::run(&root, filter.as_deref()),
+        Tool::Api => api::write(&root)?,
         Tool::Scenes { action: Scenes::List } => scenes::list(),
         Tool::Scenes { action: Scenes::Get { name, into } } => scenes::get(&name, into.as_deref())?,
         Tool::Scenes { action: Scenes::Drops } => scenes::drops::write(&root.join("scenes/drops"))?,

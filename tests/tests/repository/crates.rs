@@ -5,7 +5,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::root;
+use super::metadata;
 
 /// What a crate of this workspace may import of it: the arrows of the architecture. `gridwalk-tests` may import anything.
 const ALLOWED: [(&str, &[&str]); 8] = [
@@ -19,18 +19,6 @@ const ALLOWED: [(&str, &[&str]); 8] = [
     ("gridwalk-tools", &[]),
     ("gridwalk-bench", &["gridwalk", "gridwalk-render", "gridwalk-scene"]),
 ];
-
-fn metadata(arguments: &[&str]) -> Value {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(cargo)
-        .args(["metadata", "--locked", "--format-version", "1", "--manifest-path"])
-        .arg(root().join("Cargo.toml"))
-        .args(arguments)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "cargo metadata failed:\n{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
 
 /// Every import within the workspace, but those for tests only.
 fn edges() -> BTreeSet<(String, String)> {

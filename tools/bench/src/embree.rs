@@ -125,7 +125,13 @@ pub struct Embree {
 }
 
 /// The usual names, the newest first.
-const NAMES: [&str; 4] = ["libembree4.so.4", "libembree4.so", "libembree3.so.3", "libembree3.so"];
+const NAMES: &[&str] = if cfg!(windows) {
+    &["embree4.dll", "embree3.dll"]
+} else if cfg!(target_os = "macos") {
+    &["libembree4.dylib", "libembree3.dylib"]
+} else {
+    &["libembree4.so.4", "libembree4.so", "libembree3.so.3", "libembree3.so"]
+};
 
 impl Embree {
     /// Loads the library and makes a device; `None` where none of the usual names is installed.

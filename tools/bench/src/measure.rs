@@ -181,7 +181,14 @@ fn turns(runs: u32, mut ours: impl FnMut() -> Result<f64>, mut theirs: impl FnMu
     Ok(turns)
 }
 
+/// Processor time of all threads of this program so far, those that have ended included; not a number on systems without such a clock.
+#[cfg(not(unix))]
+fn processor_ms() -> f64 {
+    f64::NAN
+}
+
 /// Processor time of all threads of this program so far, those that have ended included.
+#[cfg(unix)]
 fn processor_ms() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
