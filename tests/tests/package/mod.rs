@@ -80,7 +80,9 @@ fn unpack(names: &[&str], folder: &Path) -> Vec<PathBuf> {
     fs::create_dir_all(folder).unwrap();
     let mut pack = cargo(&["package", "--no-verify", "--allow-dirty", "--quiet", "--target-dir"], &root());
     pack.arg(folder);
-    names.iter().for_each(|name| drop(pack.args(["--package", name])));
+    for name in names {
+        pack.args(["--package", name]);
+    }
     run(&mut pack);
     let version = env!("CARGO_PKG_VERSION");
     let unpacked = names.iter().map(|name| {

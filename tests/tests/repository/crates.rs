@@ -3,8 +3,6 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
-use serde_json::Value;
-
 use super::metadata;
 
 /// What a crate of this workspace may import of it: the arrows of the architecture. `gridwalk-tests` may import anything.
