@@ -26,7 +26,7 @@ const LISTED: [(&str, &[&str]); 2] = [
 /// The path of what a line of a listing declares, or of the type that it implements something for.
 fn item(line: &str) -> &str {
     let mut paths = line.split(|c: char| !(c.is_alphanumeric() || "_:".contains(c))).filter(|word| word.starts_with("gridwalk"));
-    if line.starts_with("impl") { paths.next_back() } else { paths.next() }.unwrap_or_default()
+    if line.starts_with("impl") { paths.next_back() } else { paths.next() }.unwrap_or_default().trim_end_matches(':')
 }
 
 /// Whether the listing can be made here.
