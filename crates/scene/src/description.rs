@@ -14,7 +14,7 @@ use crate::assets::Assets;
 use crate::curve::{Curve, Interpolation};
 use crate::files::read_file;
 use crate::key_reader::{Cache, KeyReader, first_mesh};
-use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, folder_of};
+use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, ending, folder_of};
 use crate::moving::{CAMERA_BOUNDED, CameraCurve, LIGHT_BOUNDED, LightCurve, PLACED_BOUNDED, PlacedCurve, Turntable, camera_values};
 use crate::sequence::{Pattern, Range as NumberRange, Sequence};
 use crate::suggest::closest;
@@ -904,6 +904,12 @@ impl Builder<'_> {
             (Some(file), None, None) => {
                 self.refuse_shape_keys(&entry, at)?;
                 let path = self.find(file)?;
+                if matches!(ending(&path).as_deref(), Some("gltf" | "glb" | "toml")) {
+                    return Err(source.error_in(
+                        file.span(),
+                        format!("{} is a scene of its own; open it by itself, or export the mesh as OBJ or PLY", file.get_ref()),
+                    ));
+                }
                 let timed = mesh_file::read(&mut self.assets, &path, file.get_ref()).map_err(|error| self.in_place(file.span(), error))?;
                 timed.mesh
             }

@@ -1,8 +1,16 @@
-//! Scene files for gridwalk: OBJ with MTL, glTF, and `scene.toml`, into triangles, materials, textures, lights and cameras.
+//! Scene files for gridwalk: OBJ with MTL, PLY, glTF, and `scene.toml`, into triangles, materials, textures, lights and cameras, and how
+//! they move.
 //!
-//! [`load`] reads a path, [`load_reader`] an OBJ stream, [`generate`] makes meshes without files. Files that a scene names are opened only
-//! below the scene's own folder unless [`LoadOptions::allow_external_paths`] says otherwise, and only up to the caps of [`LoadOptions`]. No
-//! input makes these functions panic.
+//! [`open`] reads a path with all that moves in it, [`load`] the same at time 0, [`load_reader`] a stream; [`generate`] makes meshes without
+//! files. Files that a scene names are opened only below the scene's own folder unless [`LoadOptions::allow_external_paths`] says
+//! otherwise, and only up to the caps of [`LoadOptions`]. No input makes these functions panic.
+//!
+//! | path | what is read |
+//! |---|---|
+//! | `name.obj`, `name.ply` | a mesh; also packed by gzip, as `name.ply.gz` |
+//! | `name.%04d.obj`, `name.####.ply` | key-frames, by the numbers in their names |
+//! | `name.gltf`, `name.glb` | a scene with all that moves in it |
+//! | `name.toml`, or a folder with a `scene.toml` | a scene file |
 //!
 //! The scene file is TOML. All keys are optional but those that its errors ask for:
 //!
@@ -28,6 +36,7 @@
 //! eye = [0, 1, 5]                          # without eye and target: azimuth, elevation, zoom from the automatic view
 //! target = [0, 1, 0]
 //! fov = 40                                 # or orthographic_height
+//! turntable = 6.0                          # seconds for a turn about the target and the scene's up; the camera moves to its right
 //!
 //! [[light]]
 //! kind = "directional"                     # irradiance, direction
@@ -59,6 +68,77 @@
 //! radius = 0.5
 //! material = "steel"
 //! ```
+//!
+//! # What moves
+//! A mesh may be a sequence of key-frames, files whose faces may be others each time. Between two that have the same faces in the same order
+//! the vertices move along straight lines; else each stands until the next one. All other keys of a mesh apply to every key-frame.
+//!
+//! ```toml
+//! [[mesh]]
+//! sequence = "elephant.%04d.obj"           # or "elephant.####.obj" (four digits or more), or ["a.obj", "b.ply", "a.obj"]
+//! fps = 24                                 # key-frames a second
+//! start = 0.5                              # seconds into the sequence at time 0
+//! loop = true                              # after the last key-frame comes the first
+//! interpolate = true                       # false: each key-frame stands until the next one
+//! first = 0                                # numbers; what is not given comes from the files that there are
+//! last = 23
+//! ```
+//!
+//! Cameras, lights and meshes that are no sequences may have keys. What a key does not give is as in the key before it, and in the first key
+//! as in the camera, the light or the mesh itself. Before the first key and after the last one nothing moves, unless it loops: then the last
+//! key is the end at which everything begins anew, and should be as the first (or a whole turn away).
+//!
+//! ```toml
+//! [animation]                              # without: as long as what takes the longest, at the rate of the fastest sequence, or 24
+//! duration = 12.0
+//! fps = 30
+//!
+//! [[camera]]
+//! name = "flight"
+//! interpolation = "smooth"                 # without corners; or "linear", or "step"
+//! loop = true
+//!
+//! [[camera.key]]
+//! time = 0                                 # seconds
+//! eye = [0, 1, 5]
+//! target = [0, 1, 0]
+//!
+//! [[camera.key]]
+//! time = 3
+//! eye = [5, 2, 0]                          # also target, up, fov, orthographic_height
+//!
+//! [[camera.key]]
+//! time = 6
+//! eye = [0, 1, 5]
+//!
+//! [[light]]
+//! kind = "point"
+//! position = [0, 3, 0]
+//!
+//! [[light.key]]
+//! time = 0
+//! intensity = 5
+//!
+//! [[light.key]]
+//! time = 2
+//! intensity = 20                           # also position, direction, target, irradiance
+//!
+//! [[mesh]]
+//! file = "wheel.obj"
+//! loop = true
+//! interpolation = "linear"
+//!
+//! [[mesh.key]]
+//! time = 0
+//! rotate = [0, 0, 0]
+//!
+//! [[mesh.key]]
+//! time = 1.5
+//! rotate = [0, 0, 360]                     # also translate, scale; angles go from one to the other each by itself
+//! ```
+//!
+//! Intensities, scales and angles of view never leave those of their keys on the way. The whole is cyclic where all that moves loops, each a
+//! whole number of times.
 #![forbid(unsafe_code)]
 
 mod animation;

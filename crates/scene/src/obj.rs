@@ -4,7 +4,7 @@
 //! errors with line numbers, smooth normals across groups (`tobj` starts its vertices anew with every group and material), concave
 //! polygons, the names of materials that are missing, and files with other bytes than UTF-8, CR line endings or continued lines.
 //!
-//! One file is one mesh with its faces in file order, whatever its groups.
+//! One file is one mesh with its faces in file order, whatever its groups, and its vertices in the order of their `v` lines.
 
 use crate::lines::{LineTooLong, Lines, MAX_LINE_BYTES, number, shown, word, words};
 use crate::normals::{Smooth, compute_normals};
@@ -351,14 +351,7 @@ impl Reader<'_> {
     }
 
     fn finish(mut self) -> Result<Obj> {
-        let mut positions_of = vec![0_u32; self.vertices.len()];
-        for (position, &head) in self.heads.iter().enumerate() {
-            let mut at = head;
-            while let Some(vertex) = self.vertices.get(at as usize) {
-                positions_of[at as usize] = position as u32;
-                at = vertex.next;
-            }
-        }
+        let positions_of = self.sort_vertices();
         let smooth: Vec<Smooth> = self
             .vertices
             .iter()
@@ -382,6 +375,38 @@ impl Reader<'_> {
             warnings.push(format!("{file}: holds no faces"));
         }
         Ok(Obj { mesh: self.mesh, materials: self.materials, libraries: self.libraries, warnings })
+    }
+}
+
+impl Reader<'_> {
+    /// Brings the vertices into the order of their positions in the file; those of one position stay in the order in which faces came to
+    /// them. So key-frames have the same indices only where their faces name the same positions, not wherever they look alike. Returns the
+    /// position of each.
+    fn sort_vertices(&mut self) -> Vec<u32> {
+        let count = self.vertices.len();
+        let (mut order, mut positions_of) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (position, &head) in self.heads.iter().enumerate() {
+            let begin = order.len();
+            let mut at = head;
+            while let Some(vertex) = self.vertices.get(at as usize) {
+                order.push(at);
+                positions_of.push(position as u32);
+                at = vertex.next;
+            }
+            // The chain begins at the last one made.
+            order[begin..].reverse();
+        }
+        let mut numbers = vec![0_u32; count];
+        for (new, &old) in order.iter().enumerate() {
+            numbers[old as usize] = new as u32;
+        }
+        self.mesh.positions = order.iter().map(|&old| self.mesh.positions[old as usize]).collect();
+        self.mesh.uvs = order.iter().map(|&old| self.mesh.uvs[old as usize]).collect();
+        self.vertices = order.iter().map(|&old| self.vertices[old as usize]).collect();
+        for index in self.mesh.indices.as_flattened_mut() {
+            *index = numbers[*index as usize];
+        }
+        positions_of
     }
 }
 

@@ -240,3 +240,101 @@ fn a_clip_that_nobody_has_is_an_error() {
     let error = open(folder.path(), &LoadOptions::default(), &wanted).unwrap_err();
     assert_eq!(error.to_string(), "there is no clip \"walk\"; this scene has none: leave the clip out");
 }
+
+/// `count` triangles side by side.
+fn row(count: usize) -> String {
+    let mut text = String::new();
+    for at in 0..count {
+        text += &format!("v {at} 0 0\nv {at}.5 0 0\nv {at} 1 0\nf -3 -2 -1\n");
+    }
+    text
+}
+
+#[test]
+fn faces_may_change_grow_and_vanish_and_come_back() {
+    let counts = [2, 20, 0, 3, 3];
+    let mut texts: Vec<String> = counts.iter().map(|&count| row(count)).collect();
+    // As many vertices, other faces.
+    texts[4] = texts[4].replacen("f -3 -2 -1", "f -3 -1 -2", 1);
+    let folder = folder(&[]);
+    for (key, text) in texts.iter().enumerate() {
+        std::fs::write(folder.path().join(format!("a.{key}.obj")), text).unwrap();
+    }
+    for start in 0..counts.len() {
+        // Half-way to the next key-frame; none of them has the same faces, so that the first one stands.
+        let text = format!("[[mesh]]\nsequence = \"a.#.obj\"\nfps = 1\nloop = true\nstart = {start}.5\n");
+        std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+        let moving = animation(folder.path());
+        assert_eq!(moving.keys_at(0, 0.0), pair(start as u32, (start as u32 + 1) % 5, 0.5));
+        let mut reader = moving.reader().unwrap();
+        assert_eq!(moving.scene.meshes[0], reader.read(0, start as u32).unwrap().mesh);
+        for (key, &count) in counts.iter().enumerate() {
+            assert_eq!(reader.read(0, key as u32).unwrap().mesh.indices.len(), count);
+        }
+        // The empty one is told once.
+        assert!(reader.read(0, 2).unwrap().warnings.is_empty());
+    }
+}
+
+#[test]
+fn key_frames_may_be_ply_in_any_packing_and_mixed_with_obj() {
+    let ply = |x: f32| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+             property list uchar int vertex_index\nend_header\n0 0 0\n{x} 0 0\n0 1 0\n3 0 1 2\n"
+        )
+    };
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    std::io::Write::write_all(&mut packed, ply(2.0).as_bytes()).unwrap();
+    let packed = packed.finish().unwrap();
+    let (plain, obj) = (ply(1.0), triangle(3.0));
+    let folder = folder(&[
+        ("a.1.ply", plain.as_bytes()),
+        ("a.2.ply", &packed),
+        ("b.07.ply.gz", &packed),
+        ("c.obj", obj.as_bytes()),
+        ("scene.toml", b"[[mesh]]\nsequence = [\"a.1.ply\", \"b.07.ply.gz\", \"c.obj\"]\nfps = 1\nstart = 1.5\n"),
+    ]);
+    let moving = animation(folder.path());
+    assert_eq!((moving.scene.meshes[0].positions[1][0], moving.scene.meshes[0].name.as_str(), moving.duration), (2.5, "a.1", 0.5));
+    let moving = animation(&folder.path().join("a.%d.ply"));
+    assert_eq!((moving.key_count(0), moving.reader().unwrap().read(0, 1).unwrap().mesh.positions[1][0]), (2, 2.0));
+    assert_eq!(animation(&folder.path().join("b.##.ply.gz")).key_count(0), 1);
+}
+
+#[test]
+fn a_herd_parses_each_file_once_and_its_reader_goes_to_another_thread() {
+    let mut text = String::new();
+    for animal in 0..12 {
+        text += &format!(
+            "[[mesh]]\nsequence = \"keys/k#.obj\"\nloop = true\nstart = {}\ntranslate = [{animal}, 0, 0]\n",
+            f64::from(animal) / 7.0
+        );
+    }
+    let folder = herd(&text);
+    let moving = animation(folder.path());
+    let mut reader = moving.reader().unwrap();
+    let parsed = std::thread::spawn(move || {
+        let reads = (0..8).flat_map(|frame| (0..12).map(move |mesh| (mesh, frame % 4)));
+        let parsed = reads.filter(|&(mesh, key)| reader.read(mesh, key).unwrap().read_ms > 0.0).count();
+        (parsed, reader.read(11, 3).unwrap().mesh.positions)
+    });
+    // All four were read for the scene at time 0.
+    assert_eq!(parsed.join().unwrap(), (0, vec![[11.0, 0.0, 0.0], [15.0, 0.0, 0.0], [11.0, 1.0, 0.0]]));
+}
+
+#[test]
+fn names_lead_out_of_the_folder_no_more_than_those_of_other_meshes() {
+    let text = triangle(1.0);
+    let folder = folder(&[
+        ("keys/k1.obj", text.as_bytes()),
+        ("scene/inside.obj", text.as_bytes()),
+        ("scene/scene.toml", b"[[mesh]]\nsequence = [\"inside.obj\", \"../keys/k1.obj\"]\n"),
+    ]);
+    let said = |error: &Error| without_folder(&error.to_string(), folder.path());
+    let moving = animation(&folder.path().join("scene"));
+    assert!(said(&moving.reader().unwrap().read(0, 1).unwrap_err()).contains("DIR/keys/k1.obj lies outside the scene's folder DIR/scene"));
+    let allowed = LoadOptions { allow_external_paths: true, ..LoadOptions::default() };
+    let moving = open(&folder.path().join("scene"), &allowed, &AnimationOptions::default()).unwrap();
+    assert!(moving.reader().unwrap().read(0, 1).is_ok());
+}
