@@ -1,0 +1,339 @@
+//! What C sees: structures, constants, results.
+
+use std::mem::offset_of;
+
+use gridwalk::ash::vk::{
+    self, Bool32 as VkBool32, Buffer as VkBuffer, BufferUsageFlags as VkBufferUsageFlags, Device as VkDevice,
+    DeviceAddress as VkDeviceAddress, DeviceSize as VkDeviceSize, Instance as VkInstance, PhysicalDevice as VkPhysicalDevice,
+    PipelineCache as VkPipelineCache, QueryPool as VkQueryPool,
+};
+use gridwalk::{Access, Tracer};
+
+/// Version of this header, to be compared with `gridwalk_version`.
+pub const GRIDWALK_VERSION_MAJOR: u32 = 0;
+/// Version of this header.
+pub const GRIDWALK_VERSION_MINOR: u32 = 1;
+/// Version of this header.
+pub const GRIDWALK_VERSION_PATCH: u32 = 0;
+
+/// `GridwalkHit::triangle` of a ray that hits nothing.
+pub const GRIDWALK_MISS: u32 = 0xFFFF_FFFF_u32;
+/// `GridwalkHit::triangle`, and any hit's answer, of a ray whose walk was given up: neither a hit nor a miss.
+pub const GRIDWALK_UNFINISHED: u32 = 0xFFFF_FFFE_u32;
+
+/// Alignment of the device address of grid, scratch and report regions, bytes.
+pub const GRIDWALK_REGION_ALIGNMENT: u64 = 64u64;
+/// Most triangles of a grid.
+pub const GRIDWALK_MAX_TRIANGLES: u32 = 67108864u32;
+/// Most cells of a grid.
+pub const GRIDWALK_MAX_CELLS: u32 = 268435456u32;
+/// Most pairs of a grid.
+pub const GRIDWALK_MAX_PAIRS: u32 = 268435456u32;
+/// Most rays of a trace.
+pub const GRIDWALK_MAX_RAYS: u32 = 268435456u32;
+/// Density that is used if none is given: cells a triangle.
+pub const GRIDWALK_DEFAULT_DENSITY: f32 = 8.0;
+
+/// `GridwalkBuildInfo::overlap`: a cell lists the triangles that it overlaps. Fewer tests when tracing, above all with long thin triangles.
+pub const GRIDWALK_OVERLAP_EXACT: u32 = 0u32;
+/// `GridwalkBuildInfo::overlap`: a cell lists the triangles whose boxes it overlaps. The faster build, by less than a tenth.
+pub const GRIDWALK_OVERLAP_BOX: u32 = 1u32;
+
+/// `GridwalkReport::overflow`: pairs were dropped; `GridwalkReport::pair_total` is the capacity that would have sufficed.
+pub const GRIDWALK_OVERFLOW_PAIRS: u32 = 1u32;
+/// `GridwalkReport::overflow`: the resolution was lowered to fit the capacity of cells.
+pub const GRIDWALK_OVERFLOW_CELLS: u32 = 2u32;
+
+/// Pipeline stages of builds in a barrier: `VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT`.
+pub const GRIDWALK_BUILD_STAGES: u64 = 0x802u64;
+/// Accesses of builds in a barrier: `VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+/// VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT`.
+pub const GRIDWALK_BUILD_ACCESS: u64 = 0x6_0000_0001_u64;
+/// Pipeline stages of traces in a barrier, of the library's and of compute shaders with the include.
+pub const GRIDWALK_TRACE_STAGES: u64 = 0x802u64;
+/// Accesses of traces in a barrier.
+pub const GRIDWALK_TRACE_ACCESS: u64 = 0x6_0000_0001_u64;
+/// Pipeline stage of the host's reads, for reports and hits: `VK_PIPELINE_STAGE_2_HOST_BIT`.
+pub const GRIDWALK_HOST_READ_STAGES: u64 = 0x4000u64;
+/// Access of the host's reads: `VK_ACCESS_2_HOST_READ_BIT`.
+pub const GRIDWALK_HOST_READ_ACCESS: u64 = 0x2000u64;
+
+/// What a function says of how it went.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GridwalkResult {
+    /// All is well.
+    Ok = 0,
+    /// A pointer or a handle is null that must not be.
+    ErrorNull = -1,
+    /// A structure's `struct_size` or `sType` is wrong, or it has fields that this version of the library does not know.
+    ErrorStruct = -2,
+    /// `vkGetInstanceProcAddr` or `vkGetDeviceProcAddr` does not know a function of Vulkan 1.3: the instance or the device is not for it.
+    ErrorLoader = -3,
+    /// A Vulkan call failed: `gridwalk_last_vk_result`.
+    ErrorVulkan = -4,
+    /// The physical device lacks what the kernels need; the message names all of it.
+    ErrorUnsuitable = -5,
+    /// A capacity or a count is beyond what a grid can hold.
+    ErrorCapacity = -6,
+    /// A region needs more memory than the device can give in one buffer: lower the capacity.
+    ErrorDeviceLimit = -7,
+    /// A region that was passed is too small, not aligned, or has no buffer where one is needed.
+    ErrorRegion = -8,
+    /// An option has no meaning.
+    ErrorOption = -9,
+    /// A defect of the library.
+    ErrorInternal = -10,
+}
+
+/// Makes the pipelines once, then records builds and traces for one device.
+pub struct GridwalkTracer {
+    pub(crate) tracer: Tracer,
+}
+
+/// `PFN_vkGetInstanceProcAddr`, which may be null.
+#[repr(transparent)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types, reason = "Vulkan's name")]
+pub struct PFN_vkGetInstanceProcAddr(pub(crate) Option<vk::PFN_vkGetInstanceProcAddr>);
+
+/// The device that a tracer records for.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkDeviceDesc {
+    /// `sizeof(GridwalkDeviceDesc)`.
+    pub struct_size: u32,
+    /// `VK_TRUE` if the instance has `VK_EXT_debug_utils` enabled and wants names of pipelines and labels of steps.
+    pub debug_utils: VkBool32,
+    /// Through which all other Vulkan functions are found.
+    pub get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
+    /// Instance of the device, created for Vulkan 1.3 or later.
+    pub instance: VkInstance,
+    /// Physical device of the device.
+    pub physical_device: VkPhysicalDevice,
+    /// Device with the features of `gridwalk_requirements` enabled. It outlives the tracer.
+    pub device: VkDevice,
+    /// Cache for the pipelines, or `VK_NULL_HANDLE`. Used while the tracer is made.
+    pub pipeline_cache: VkPipelineCache,
+}
+
+/// A piece of a buffer of yours.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkRegion {
+    /// The buffer, with usage `VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT`. Needed of scratch regions alone.
+    pub buffer: VkBuffer,
+    /// First byte of the region in the buffer.
+    pub offset: VkDeviceSize,
+    /// Bytes.
+    pub size: VkDeviceSize,
+    /// Device address of the region's first byte.
+    pub address: VkDeviceAddress,
+}
+
+/// What a build must have room for. Sizes are made from capacities once; builds of any smaller size fit.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkCapacity {
+    /// Triangles, at most `GRIDWALK_MAX_TRIANGLES`.
+    pub triangles: u32,
+    /// Cells of the grid, at most `GRIDWALK_MAX_CELLS`; a build lowers its density to fit.
+    pub cells: u32,
+    /// Cells in the boxes of all triangles, counted once a triangle, at most `GRIDWALK_MAX_PAIRS`. Pairs beyond are dropped and reported.
+    pub pairs: u32,
+}
+
+/// What a region needs.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkRegionSize {
+    /// Bytes.
+    pub size: VkDeviceSize,
+    /// Alignment of the region's device address, bytes.
+    pub alignment: VkDeviceSize,
+    /// Usage flags of its buffer.
+    pub usage: VkBufferUsageFlags,
+}
+
+/// What the regions of a build need.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkBuildSizes {
+    /// The grid itself, triangles included: needed as long as rays are traced.
+    pub grid: GridwalkRegionSize,
+    /// Needed while a build runs; builds that do not overlap in time may share it.
+    pub scratch: GridwalkRegionSize,
+    /// A `GridwalkReport`, in memory that the host can read if it wants to.
+    pub report: GridwalkRegionSize,
+    /// Timestamps that a build writes if asked to: one before its first step and one after each.
+    pub timestamp_count: u32,
+}
+
+/// Indexed triangles in device memory.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkGeometry {
+    /// Three floats a vertex, tightly packed.
+    pub positions: GridwalkRegion,
+    /// Three `uint32_t` a triangle, tightly packed.
+    pub indices: GridwalkRegion,
+    /// Vertices in `positions`, at most 2^29; a triangle with an index beyond is dropped.
+    pub vertex_count: u32,
+    /// Triangles in `indices`.
+    pub triangle_count: u32,
+}
+
+/// A build of a grid.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkBuildInfo {
+    /// `sizeof(GridwalkBuildInfo)`.
+    pub struct_size: u32,
+    /// `GRIDWALK_OVERLAP_EXACT` (0) or `GRIDWALK_OVERLAP_BOX`.
+    pub overlap: u32,
+    /// What is built.
+    pub geometry: GridwalkGeometry,
+    /// Where the grid goes. Its address names the grid when tracing.
+    pub grid: GridwalkRegion,
+    /// Memory of the build.
+    pub scratch: GridwalkRegion,
+    /// Where the `GridwalkReport` goes.
+    pub report: GridwalkRegion,
+    /// What the regions were sized for.
+    pub capacity: GridwalkCapacity,
+    /// Cells a triangle; 0: `GRIDWALK_DEFAULT_DENSITY`.
+    pub density: f32,
+    /// Cells along each axis, instead of the density; three zeros: by the density.
+    pub resolution: [u32; 3],
+    /// First of the `GridwalkBuildSizes::timestamp_count` queries, which the recording resets.
+    pub first_query: u32,
+    /// Pool of type `VK_QUERY_TYPE_TIMESTAMP` for the times of the steps, or `VK_NULL_HANDLE`.
+    pub timestamp_pool: VkQueryPool,
+}
+
+/// A trace of rays through a grid.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkTraceInfo {
+    /// `sizeof(GridwalkTraceInfo)`.
+    pub struct_size: u32,
+    /// The number of rays; with an indirect count its bound, and rays beyond are not traced.
+    pub ray_count: u32,
+    /// `GridwalkRay`s; the address is a multiple of 16.
+    pub rays: GridwalkRegion,
+    /// Closest hit: `GridwalkHit`s, the address a multiple of 16. Any hit: a `uint32_t` a ray: 1, 0 or `GRIDWALK_UNFINISHED`.
+    pub hits: GridwalkRegion,
+    /// Memory of the trace: `gridwalk_trace_scratch_size`.
+    pub scratch: GridwalkRegion,
+    /// Address 0: as many rays as `ray_count`. Otherwise a `uint32_t` there says how many.
+    pub indirect_count: GridwalkRegion,
+    /// Closest hit only: where each ray's numbers of steps, triangle tests and cells that were not empty are written, as four `uint32_t`;
+    /// address 0: nowhere.
+    pub counters: GridwalkRegion,
+    /// Closest hit only: `VK_TRUE` to go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are
+    /// traced one after another.
+    pub resume: VkBool32,
+}
+
+/// A ray in device memory.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkRay {
+    /// Where it begins.
+    pub origin: [f32; 3],
+    /// Least t of a hit.
+    pub t_min: f32,
+    /// Where it goes: of any length but zero.
+    pub direction: [f32; 3],
+    /// Greatest t of a hit; infinity is allowed.
+    pub t_max: f32,
+}
+
+/// A hit in device memory.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkHit {
+    /// Distance in lengths of the direction; infinite for a miss.
+    pub t: f32,
+    /// Weight of the triangle's second vertex.
+    pub u: f32,
+    /// Weight of the triangle's third vertex.
+    pub v: f32,
+    /// Index of the triangle, `GRIDWALK_MISS` or `GRIDWALK_UNFINISHED`.
+    pub triangle: u32,
+}
+
+/// What a build tells of itself, in device memory.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkReport {
+    /// Triangles given.
+    pub triangles: u32,
+    /// Triangles left out: a vertex is not finite, or an index lies outside of the positions.
+    pub dropped: u32,
+    /// Cells of the grid.
+    pub cells: u32,
+    /// Cells with at least one triangle.
+    pub cells_in_use: u32,
+    /// Cells along each axis.
+    pub resolution: [u32; 3],
+    /// Triangles in the fullest cell.
+    pub longest_list: u32,
+    /// Pairs (cell, triangle) that the grid lists.
+    pub pairs: u32,
+    /// Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
+    pub pair_total: u32,
+    /// 0, or bits `GRIDWALK_OVERFLOW_PAIRS` and `GRIDWALK_OVERFLOW_CELLS`.
+    pub overflow: u32,
+    /// Bits of the sort's largest key.
+    pub key_bits: u32,
+    /// Minimum of the scene box.
+    pub box_min: [f32; 3],
+    /// Density that was used: what was asked for, or less if the cells did not fit.
+    pub density: f32,
+    /// Maximum of the scene box.
+    pub box_max: [f32; 3],
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// The library's own types and numbers are the header's.
+const _: () = {
+    assert!(GRIDWALK_MISS == gridwalk::MISS && GRIDWALK_UNFINISHED == gridwalk::UNFINISHED);
+    assert!(GRIDWALK_REGION_ALIGNMENT == gridwalk::REGION_ALIGNMENT);
+    assert!(GRIDWALK_MAX_TRIANGLES == gridwalk::MAX_TRIANGLES && GRIDWALK_MAX_CELLS == gridwalk::MAX_CELLS);
+    assert!(GRIDWALK_MAX_PAIRS == gridwalk::MAX_PAIRS && GRIDWALK_MAX_RAYS == gridwalk::MAX_RAYS);
+    assert!(GRIDWALK_DEFAULT_DENSITY == gridwalk::BuildOptions::DEFAULT_DENSITY);
+    assert!(GRIDWALK_OVERFLOW_PAIRS == gridwalk::gridwalk_core::layout::OVERFLOW_PAIRS);
+    assert!(GRIDWALK_OVERFLOW_CELLS == gridwalk::gridwalk_core::layout::OVERFLOW_CELLS);
+    const fn same(access: Access, stages: u64, accesses: u64) -> bool {
+        access.stages.as_raw() == stages && access.access.as_raw() == accesses
+    }
+    assert!(same(Tracer::BUILD, GRIDWALK_BUILD_STAGES, GRIDWALK_BUILD_ACCESS));
+    assert!(same(Tracer::TRACE, GRIDWALK_TRACE_STAGES, GRIDWALK_TRACE_ACCESS));
+    assert!(same(Access::HOST_READ, GRIDWALK_HOST_READ_STAGES, GRIDWALK_HOST_READ_ACCESS));
+    const fn number(text: &str) -> u32 {
+        match u32::from_str_radix(text, 10) {
+            Ok(number) => number,
+            Err(_) => u32::MAX,
+        }
+    }
+    assert!(GRIDWALK_VERSION_MAJOR == number(env!("CARGO_PKG_VERSION_MAJOR")));
+    assert!(GRIDWALK_VERSION_MINOR == number(env!("CARGO_PKG_VERSION_MINOR")));
+    assert!(GRIDWALK_VERSION_PATCH == number(env!("CARGO_PKG_VERSION_PATCH")));
+};
+
+/// Asserts that two structures have the same size and the named fields in the same places.
+macro_rules! same_layout {
+    ($ours:ty, $theirs:ty, $($field:ident)*) => {
+        const _: () = {
+            assert!(size_of::<$ours>() == size_of::<$theirs>());
+            $(assert!(offset_of!($ours, $field) == offset_of!($theirs, $field));)*
+        };
+    };
+}
+
+same_layout!(GridwalkRay, gridwalk::Ray, origin t_min direction t_max);
+same_layout!(GridwalkHit, gridwalk::Hit, t u v triangle);
+same_layout!(GridwalkReport, gridwalk::Report,
+    triangles dropped cells cells_in_use resolution longest_list pairs pair_total overflow key_bits box_min density box_max reserved);
