@@ -92,37 +92,37 @@
 /**
  * `GridwalkHit::triangle` of a ray that hits nothing.
  */
-#define GRIDWALK_MISS 4294967295
+#define GRIDWALK_MISS 4294967295u
 
 /**
  * `GridwalkHit::triangle`, and any hit's answer, of a ray whose walk was given up: neither a hit nor a miss.
  */
-#define GRIDWALK_UNFINISHED 4294967294
+#define GRIDWALK_UNFINISHED 4294967294u
 
 /**
  * Alignment of the device address of grid, scratch and report regions, bytes.
  */
-#define GRIDWALK_REGION_ALIGNMENT 64
+#define GRIDWALK_REGION_ALIGNMENT 64ull
 
 /**
  * Most triangles of a grid.
  */
-#define GRIDWALK_MAX_TRIANGLES 67108864
+#define GRIDWALK_MAX_TRIANGLES 67108864u
 
 /**
  * Most cells of a grid.
  */
-#define GRIDWALK_MAX_CELLS 268435456
+#define GRIDWALK_MAX_CELLS 268435456u
 
 /**
  * Most pairs of a grid.
  */
-#define GRIDWALK_MAX_PAIRS 268435456
+#define GRIDWALK_MAX_PAIRS 268435456u
 
 /**
  * Most rays of a trace.
  */
-#define GRIDWALK_MAX_RAYS 268435456
+#define GRIDWALK_MAX_RAYS 268435456u
 
 /**
  * Density that is used if none is given: cells a triangle.
@@ -132,53 +132,53 @@
 /**
  * `GridwalkBuildInfo::overlap`: a cell lists the triangles that it overlaps. Fewer tests when tracing, above all with long thin triangles.
  */
-#define GRIDWALK_OVERLAP_EXACT 0
+#define GRIDWALK_OVERLAP_EXACT 0u
 
 /**
  * `GridwalkBuildInfo::overlap`: a cell lists the triangles whose boxes it overlaps. The faster build, by less than a tenth.
  */
-#define GRIDWALK_OVERLAP_BOX 1
+#define GRIDWALK_OVERLAP_BOX 1u
 
 /**
  * `GridwalkReport::overflow`: pairs were dropped; `GridwalkReport::pair_total` is the capacity that would have sufficed.
  */
-#define GRIDWALK_OVERFLOW_PAIRS 1
+#define GRIDWALK_OVERFLOW_PAIRS 1u
 
 /**
  * `GridwalkReport::overflow`: the resolution was lowered to fit the capacity of cells.
  */
-#define GRIDWALK_OVERFLOW_CELLS 2
+#define GRIDWALK_OVERFLOW_CELLS 2u
 
 /**
  * Pipeline stages of builds in a barrier: `VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT`.
  */
-#define GRIDWALK_BUILD_STAGES 2050
+#define GRIDWALK_BUILD_STAGES 2050ull
 
 /**
  * Accesses of builds in a barrier: `VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
  * VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT`.
  */
-#define GRIDWALK_BUILD_ACCESS 25769803777
+#define GRIDWALK_BUILD_ACCESS 25769803777ull
 
 /**
  * Pipeline stages of traces in a barrier, of the library's and of compute shaders with the include.
  */
-#define GRIDWALK_TRACE_STAGES 2050
+#define GRIDWALK_TRACE_STAGES 2050ull
 
 /**
  * Accesses of traces in a barrier.
  */
-#define GRIDWALK_TRACE_ACCESS 25769803777
+#define GRIDWALK_TRACE_ACCESS 25769803777ull
 
 /**
  * Pipeline stage of the host's reads, for reports and hits: `VK_PIPELINE_STAGE_2_HOST_BIT`.
  */
-#define GRIDWALK_HOST_READ_STAGES 16384
+#define GRIDWALK_HOST_READ_STAGES 16384ull
 
 /**
  * Access of the host's reads: `VK_ACCESS_2_HOST_READ_BIT`.
  */
-#define GRIDWALK_HOST_READ_ACCESS 8192
+#define GRIDWALK_HOST_READ_ACCESS 8192ull
 
 /**
  * What a function says of how it went.
@@ -471,6 +471,112 @@ typedef struct GridwalkTraceInfo {
      */
     VkBool32 resume;
 } GridwalkTraceInfo;
+
+/**
+ * A ray in device memory.
+ */
+typedef struct GridwalkRay {
+    /**
+     * Where it begins.
+     */
+    float origin[3];
+    /**
+     * Least t of a hit.
+     */
+    float t_min;
+    /**
+     * Where it goes: of any length but zero.
+     */
+    float direction[3];
+    /**
+     * Greatest t of a hit; infinity is allowed.
+     */
+    float t_max;
+} GridwalkRay;
+
+/**
+ * A hit in device memory.
+ */
+typedef struct GridwalkHit {
+    /**
+     * Distance in lengths of the direction; infinite for a miss.
+     */
+    float t;
+    /**
+     * Weight of the triangle's second vertex.
+     */
+    float u;
+    /**
+     * Weight of the triangle's third vertex.
+     */
+    float v;
+    /**
+     * Index of the triangle, `GRIDWALK_MISS` or `GRIDWALK_UNFINISHED`.
+     */
+    uint32_t triangle;
+} GridwalkHit;
+
+/**
+ * What a build tells of itself, in device memory.
+ */
+typedef struct GridwalkReport {
+    /**
+     * Triangles given.
+     */
+    uint32_t triangles;
+    /**
+     * Triangles left out: a vertex is not finite, or an index lies outside of the positions.
+     */
+    uint32_t dropped;
+    /**
+     * Cells of the grid.
+     */
+    uint32_t cells;
+    /**
+     * Cells with at least one triangle.
+     */
+    uint32_t cells_in_use;
+    /**
+     * Cells along each axis.
+     */
+    uint32_t resolution[3];
+    /**
+     * Triangles in the fullest cell.
+     */
+    uint32_t longest_list;
+    /**
+     * Pairs (cell, triangle) that the grid lists.
+     */
+    uint32_t pairs;
+    /**
+     * Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
+     */
+    uint32_t pair_total;
+    /**
+     * 0, or bits `GRIDWALK_OVERFLOW_PAIRS` and `GRIDWALK_OVERFLOW_CELLS`.
+     */
+    uint32_t overflow;
+    /**
+     * Bits of the sort's largest key.
+     */
+    uint32_t key_bits;
+    /**
+     * Minimum of the scene box.
+     */
+    float box_min[3];
+    /**
+     * Density that was used: what was asked for, or less if the cells did not fit.
+     */
+    float density;
+    /**
+     * Maximum of the scene box.
+     */
+    float box_max[3];
+    /**
+     * Zero.
+     */
+    uint32_t reserved;
+} GridwalkReport;
 
 #ifdef __cplusplus
 extern "C" {

@@ -406,7 +406,6 @@ fn trace_info(info: &GridwalkTraceInfo) -> Result<TraceInfo> {
     Ok(TraceInfo { resume: info.resume != vk::FALSE, counters, ..TraceInfo::new(rays, hits, count, scratch) })
 }
 
-
 /// The library reckons with offsets and addresses inside of a region.
 fn region(name: &'static str, given: &GridwalkRegion) -> Result<Region> {
     let GridwalkRegion { buffer, offset, size, address } = *given;

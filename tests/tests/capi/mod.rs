@@ -1,6 +1,7 @@
 //! The C interface: the header, and a C program that uses it.
 
 mod header;
+mod program;
 
 use std::path::{Path, PathBuf};
 
