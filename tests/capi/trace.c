@@ -398,7 +398,7 @@ static int consistent(const Mesh *mesh, const GridwalkRay *ray, const GridwalkHi
 }
 
 static void same_report(const GridwalkReport *report, uint32_t triangles, uint32_t dropped) {
-    if (report->triangles != triangles || report->dropped != dropped || report->overflow || !report->pairs || report->reserved) {
+    if (report->triangles != triangles || report->dropped != dropped || report->overflow || !report->pairs || report->triangle_total != triangles) {
         fprintf(stderr, "report: %u triangles, %u dropped, overflow %u, %u pairs\n", report->triangles, report->dropped, report->overflow,
                 report->pairs);
         fail("the report tells of the build");
@@ -562,9 +562,10 @@ int main(int argc, char **argv) {
     char name[64];
     if (sizes.timestamp_count < 2 || sizes.timestamp_count > MAX_STEPS) fail("a build has some steps");
     check(gridwalk_build_step_name(tracer, &capacity, 0, name, sizeof name), "gridwalk_build_step_name");
-    if (strcmp(name, "bounds_reduce")) fail("a build begins with the bounds");
-    check(gridwalk_build_step_name(tracer, &capacity, 0, name, 7), "gridwalk_build_step_name");
-    if (strcmp(name, "bounds")) fail("a name is cut where the room ends");
+    char cut[4];
+    if (strlen(name) < 4) fail("a step has a name");
+    check(gridwalk_build_step_name(tracer, &capacity, 0, cut, sizeof cut), "gridwalk_build_step_name");
+    if (strlen(cut) != 3 || strncmp(cut, name, 3)) fail("a name is cut where the room ends");
     refused(gridwalk_build_step_name(tracer, &capacity, sizes.timestamp_count - 1, name, sizeof name), GRIDWALK_RESULT_ERROR_OPTION, "step");
 
     VkQueryPool queries;

@@ -150,6 +150,11 @@
 #define GRIDWALK_OVERFLOW_CELLS 2u
 
 /**
+ * `GridwalkReport::overflow`: triangles beyond the capacity were left out; `GridwalkReport::triangle_total` would have sufficed.
+ */
+#define GRIDWALK_OVERFLOW_TRIANGLES 4u
+
+/**
  * Pipeline stages of builds in a barrier: `VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT`.
  */
 #define GRIDWALK_BUILD_STAGES 2050ull
@@ -521,7 +526,7 @@ typedef struct GridwalkHit {
  */
 typedef struct GridwalkReport {
     /**
-     * Triangles given.
+     * Triangles of the grid, dropped ones included.
      */
     uint32_t triangles;
     /**
@@ -553,7 +558,7 @@ typedef struct GridwalkReport {
      */
     uint32_t pair_total;
     /**
-     * 0, or bits `GRIDWALK_OVERFLOW_PAIRS` and `GRIDWALK_OVERFLOW_CELLS`.
+     * 0, or bits `GRIDWALK_OVERFLOW_PAIRS`, `GRIDWALK_OVERFLOW_CELLS` and `GRIDWALK_OVERFLOW_TRIANGLES`.
      */
     uint32_t overflow;
     /**
@@ -573,9 +578,9 @@ typedef struct GridwalkReport {
      */
     float box_max[3];
     /**
-     * Zero.
+     * Triangles of all geometries: the capacity of triangles that the build needed. 0xFFFFFFFF: that many or more.
      */
-    uint32_t reserved;
+    uint32_t triangle_total;
 } GridwalkReport;
 
 #ifdef __cplusplus

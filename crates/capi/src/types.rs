@@ -43,6 +43,8 @@ pub const GRIDWALK_OVERLAP_BOX: u32 = 1u32;
 pub const GRIDWALK_OVERFLOW_PAIRS: u32 = 1u32;
 /// `GridwalkReport::overflow`: the resolution was lowered to fit the capacity of cells.
 pub const GRIDWALK_OVERFLOW_CELLS: u32 = 2u32;
+/// `GridwalkReport::overflow`: triangles beyond the capacity were left out; `GridwalkReport::triangle_total` would have sufficed.
+pub const GRIDWALK_OVERFLOW_TRIANGLES: u32 = 4u32;
 
 /// Pipeline stages of builds in a barrier: `VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT`.
 pub const GRIDWALK_BUILD_STAGES: u64 = 0x802u64;
@@ -267,7 +269,7 @@ pub struct GridwalkHit {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct GridwalkReport {
-    /// Triangles given.
+    /// Triangles of the grid, dropped ones included.
     pub triangles: u32,
     /// Triangles left out: a vertex is not finite, or an index lies outside of the positions.
     pub dropped: u32,
@@ -283,7 +285,7 @@ pub struct GridwalkReport {
     pub pairs: u32,
     /// Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
     pub pair_total: u32,
-    /// 0, or bits `GRIDWALK_OVERFLOW_PAIRS` and `GRIDWALK_OVERFLOW_CELLS`.
+    /// 0, or bits `GRIDWALK_OVERFLOW_PAIRS`, `GRIDWALK_OVERFLOW_CELLS` and `GRIDWALK_OVERFLOW_TRIANGLES`.
     pub overflow: u32,
     /// Bits of the sort's largest key.
     pub key_bits: u32,
@@ -293,8 +295,8 @@ pub struct GridwalkReport {
     pub density: f32,
     /// Maximum of the scene box.
     pub box_max: [f32; 3],
-    /// Zero.
-    pub reserved: u32,
+    /// Triangles of all geometries: the capacity of triangles that the build needed. 0xFFFFFFFF: that many or more.
+    pub triangle_total: u32,
 }
 
 /// The library's own types and numbers are the header's.
@@ -306,6 +308,7 @@ const _: () = {
     assert!(GRIDWALK_DEFAULT_DENSITY == gridwalk::BuildOptions::DEFAULT_DENSITY);
     assert!(GRIDWALK_OVERFLOW_PAIRS == gridwalk::gridwalk_core::layout::OVERFLOW_PAIRS);
     assert!(GRIDWALK_OVERFLOW_CELLS == gridwalk::gridwalk_core::layout::OVERFLOW_CELLS);
+    assert!(GRIDWALK_OVERFLOW_TRIANGLES == gridwalk::gridwalk_core::layout::OVERFLOW_TRIANGLES);
     const fn same(access: Access, stages: u64, accesses: u64) -> bool {
         access.stages.as_raw() == stages && access.access.as_raw() == accesses
     }
@@ -336,4 +339,4 @@ macro_rules! same_layout {
 same_layout!(GridwalkRay, gridwalk::Ray, origin t_min direction t_max);
 same_layout!(GridwalkHit, gridwalk::Hit, t u v triangle);
 same_layout!(GridwalkReport, gridwalk::Report,
-    triangles dropped cells cells_in_use resolution longest_list pairs pair_total overflow key_bits box_min density box_max reserved);
+    triangles dropped cells cells_in_use resolution longest_list pairs pair_total overflow key_bits box_min density box_max triangle_total);
