@@ -41,7 +41,8 @@ pub extern "C" fn gridwalk_last_vk_result() -> VkResult {
     error::last_vk_result()
 }
 
-const GLSL: [u8; GRIDWALK_GLSL.len() + 1] = {
+/// The include's text, and the zero byte that C wants.
+static GLSL: [u8; GRIDWALK_GLSL.len() + 1] = {
     let mut text = [0; GRIDWALK_GLSL.len() + 1];
     let mut i = 0;
     while i < GRIDWALK_GLSL.len() {
@@ -50,13 +51,12 @@ const GLSL: [u8; GRIDWALK_GLSL.len() + 1] = {
     }
     text
 };
-static GLSL_TEXT: [u8; GLSL.len()] = GLSL;
 
 /// The text of the GLSL include, which traces from your own shader: pass it the address of a grid region. Its head documents it. The
 /// text is constant, and good as long as the library is loaded.
 #[unsafe(no_mangle)]
 pub extern "C" fn gridwalk_glsl() -> *const c_char {
-    GLSL_TEXT.as_ptr().cast()
+    GLSL.as_ptr().cast()
 }
 
 /// Looks at a physical device before a device is made of it, and enables the features that the library needs.
