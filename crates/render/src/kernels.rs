@@ -111,6 +111,18 @@ pub static INTERPOLATE: Kernel = Kernel {
     spec_constants: &[],
 };
 
+/// Kernel `interpolate_colours`, from `glsl/render/map/interpolate_colours.comp`.
+pub static INTERPOLATE_COLOURS: Kernel = Kernel {
+    name: "interpolate_colours",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/interpolate_colours.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[("first_colours", Access::Read), ("second_colours", Access::Read), ("colours", Access::Write)],
+    spec_constants: &[],
+};
+
 /// Kernel `light_add`, from `glsl/render/map/light_add.comp`.
 pub static LIGHT_ADD: Kernel = Kernel {
     name: "light_add",
@@ -308,6 +320,7 @@ pub static ALL: &[&Kernel] = &[
     &FLAG_REDUCE,
     &FLAG_SPINE,
     &INTERPOLATE,
+    &INTERPOLATE_COLOURS,
     &LIGHT_ADD,
     &LIGHT_COUNT,
     &LIGHT_EMIT,
@@ -527,6 +540,24 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, weight) == 76);
     assert!(size(|host: &Host| &host.weight) == 4);
     assert!(size_of::<Host>() == 80);
+};
+const _: () = {
+    use crate::push::InterpolateColours as Host;
+    assert!(core::mem::offset_of!(Host, first_colours) == 0);
+    assert!(size(|host: &Host| &host.first_colours) == 8);
+    assert!(core::mem::offset_of!(Host, second_colours) == 8);
+    assert!(size(|host: &Host| &host.second_colours) == 8);
+    assert!(core::mem::offset_of!(Host, colours) == 16);
+    assert!(size(|host: &Host| &host.colours) == 8);
+    assert!(core::mem::offset_of!(Host, word_count) == 24);
+    assert!(size(|host: &Host| &host.word_count) == 4);
+    assert!(core::mem::offset_of!(Host, weight) == 28);
+    assert!(size(|host: &Host| &host.weight) == 4);
+    assert!(core::mem::offset_of!(Host, has_colours) == 32);
+    assert!(size(|host: &Host| &host.has_colours) == 4);
+    assert!(core::mem::offset_of!(Host, padding) == 36);
+    assert!(size(|host: &Host| &host.padding) == 4);
+    assert!(size_of::<Host>() == 40);
 };
 const _: () = {
     use crate::layout::Light as Host;
@@ -765,25 +796,29 @@ const _: () = {
     assert!(size(|host: &Host| &host.uvs) == 8);
     assert!(core::mem::offset_of!(Host, surrounds) == 32);
     assert!(size(|host: &Host| &host.surrounds) == 8);
-    assert!(core::mem::offset_of!(Host, mesh_starts) == 40);
+    assert!(core::mem::offset_of!(Host, colours) == 40);
+    assert!(size(|host: &Host| &host.colours) == 8);
+    assert!(core::mem::offset_of!(Host, mesh_starts) == 48);
     assert!(size(|host: &Host| &host.mesh_starts) == 8);
-    assert!(core::mem::offset_of!(Host, materials) == 48);
+    assert!(core::mem::offset_of!(Host, materials) == 56);
     assert!(size(|host: &Host| &host.materials) == 8);
-    assert!(core::mem::offset_of!(Host, textures) == 56);
+    assert!(core::mem::offset_of!(Host, textures) == 64);
     assert!(size(|host: &Host| &host.textures) == 8);
-    assert!(core::mem::offset_of!(Host, texels) == 64);
+    assert!(core::mem::offset_of!(Host, texels) == 72);
     assert!(size(|host: &Host| &host.texels) == 8);
-    assert!(core::mem::offset_of!(Host, srgb) == 72);
+    assert!(core::mem::offset_of!(Host, srgb) == 80);
     assert!(size(|host: &Host| &host.srgb) == 8);
-    assert!(core::mem::offset_of!(Host, lights) == 80);
+    assert!(core::mem::offset_of!(Host, lights) == 88);
     assert!(size(|host: &Host| &host.lights) == 8);
-    assert!(core::mem::offset_of!(Host, panorama) == 88);
+    assert!(core::mem::offset_of!(Host, panorama) == 96);
     assert!(size(|host: &Host| &host.panorama) == 8);
-    assert!(core::mem::offset_of!(Host, ambient) == 96);
+    assert!(core::mem::offset_of!(Host, reserved) == 104);
+    assert!(size(|host: &Host| &host.reserved) == 8);
+    assert!(core::mem::offset_of!(Host, ambient) == 112);
     assert!(size(|host: &Host| &host.ambient) == 12);
-    assert!(core::mem::offset_of!(Host, triangle_count) == 108);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 124);
     assert!(size(|host: &Host| &host.triangle_count) == 4);
-    assert!(core::mem::offset_of!(Host, background) == 112);
+    assert!(core::mem::offset_of!(Host, background) == 128);
     assert!(size(|host: &Host| &host.background) == 64);
 };
 const _: () = {

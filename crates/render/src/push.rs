@@ -166,6 +166,19 @@ pub(crate) struct Interpolate {
     pub(crate) weight: f32,
 }
 
+/// Of kernel `interpolate_colours`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct InterpolateColours {
+    pub(crate) first_colours: u64,
+    pub(crate) second_colours: u64,
+    pub(crate) colours: u64,
+    pub(crate) word_count: u32,
+    pub(crate) weight: f32,
+    pub(crate) has_colours: u32,
+    pub(crate) padding: u32,
+}
+
 /// Of kernel `morph`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]

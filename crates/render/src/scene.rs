@@ -50,13 +50,15 @@ pub(crate) struct Arrays {
     pub(crate) uvs: Buffer,
     pub(crate) indices: Buffer,
     pub(crate) surrounds: Buffer,
+    /// None where no mesh has any.
+    pub(crate) colours: Option<Buffer>,
     vertices: u32,
     triangles: u32,
 }
 
 impl Arrays {
-    /// Room for so many vertices and triangles.
-    pub(crate) fn new(context: &Context, vertices: u32, triangles: u32) -> Result<Arrays> {
+    /// Room for so many vertices and triangles, with colours of vertices or without.
+    pub(crate) fn new(context: &Context, vertices: u32, triangles: u32, has_colours: bool) -> Result<Arrays> {
         let buffer = |name, count: u32, size: u64| {
             context.buffer(&BufferDesc { name, size: u64::from(count) * size, kind: BufferKind::Device, dedicated: false })
         };
@@ -66,19 +68,27 @@ impl Arrays {
             uvs: buffer("scene texture coordinates", vertices, 8)?,
             indices: buffer("scene indices", triangles, 12)?,
             surrounds: buffer("scene triangle materials", triangles, 8)?,
+            colours: if has_colours { Some(buffer("scene colours", vertices, 12)?) } else { None },
             vertices,
             triangles,
         })
     }
 
-    /// Buffers of one [`Arrays`].
-    pub(crate) const BUFFERS: u32 = 5;
+    /// Number of buffers.
+    pub(crate) fn count(&self) -> u32 {
+        5 + u32::from(self.colours.is_some())
+    }
 
     pub(crate) fn write_vertices(&self, mesh: &Mesh, first_vertex: u32) -> Result<()> {
         let first = u64::from(first_vertex);
         self.positions.write(first * 12, &mesh.positions)?;
         self.normals.write(first * 12, &mesh.normals)?;
-        self.uvs.write(first * 8, &mesh.uvs)
+        self.uvs.write(first * 8, &mesh.uvs)?;
+        match &self.colours {
+            Some(colours) if mesh.colours.is_empty() => colours.write(first * 12, &vec![[1.0_f32; 3]; mesh.positions.len()]),
+            Some(colours) => colours.write(first * 12, &mesh.colours),
+            None => Ok(()),
+        }
     }
 
     /// The sum of an index and `first_vertex` is within what `check` has allowed.
@@ -96,7 +106,8 @@ impl Arrays {
     }
 
     fn bytes(&self) -> u64 {
-        [&self.positions, &self.normals, &self.uvs, &self.indices, &self.surrounds].iter().map(|buffer| buffer.size()).sum()
+        let always = [&self.positions, &self.normals, &self.uvs, &self.indices, &self.surrounds];
+        always.into_iter().chain(&self.colours).map(Buffer::size).sum()
     }
 }
 
@@ -194,7 +205,7 @@ impl GpuScene {
     /// [`Context::submit`].
     pub fn upload(context: &Context, scene: &Scene) -> Result<GpuScene> {
         let counts = check(scene)?;
-        let arrays = Arrays::new(context, counts.vertices, counts.triangles)?;
+        let arrays = Arrays::new(context, counts.vertices, counts.triangles, scene.meshes.iter().any(|mesh| !mesh.colours.is_empty()))?;
         let mut ranges = Vec::with_capacity(scene.meshes.len());
         let mut starts = Vec::with_capacity(scene.meshes.len());
         let (mut first_vertex, mut first_triangle) = (0, 0);
@@ -250,6 +261,7 @@ impl GpuScene {
             normals: self.arrays.normals.address(),
             uvs: self.arrays.uvs.address(),
             surrounds: self.arrays.surrounds.address(),
+            colours: self.arrays.colours.as_ref().map_or(0, Buffer::address),
             mesh_starts: self.mesh_starts.address(),
             materials: self.surfaces.materials.address(),
             textures: self.surfaces.textures.address(),
@@ -485,6 +497,9 @@ pub(crate) fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), String> {
             mesh.normals.len(),
             mesh.uvs.len()
         ));
+    }
+    if !mesh.colours.is_empty() && mesh.colours.len() != count {
+        return Err(format!("mesh {}: {} colours for {count} positions", mesh.name, mesh.colours.len()));
     }
     if mesh.materials.len() != mesh.indices.len() {
         return Err(format!("mesh {}: {} materials for {} triangles", mesh.name, mesh.materials.len(), mesh.indices.len()));

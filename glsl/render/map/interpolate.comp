@@ -21,13 +21,6 @@ layout(push_constant, std430) uniform Interpolate {
     float weight;
 };
 
-// Exactly `a` where the two are equal: what stands still does not tremble.
-float between(uint first, uint second) {
-    float a = uintBitsToFloat(first);
-    float b = uintBitsToFloat(second);
-    return a + (b - a) * weight;
-}
-
 void main() {
     uint vertex = invocation_index();
     if (vertex >= vertex_count) {
@@ -44,16 +37,16 @@ void main() {
         return;
     }
     for (uint i = 3u * vertex; i < 3u * vertex + 3u; ++i) {
-        positions.word[i] = floatBitsToUint(between(first_positions.word[i], second_positions.word[i]));
+        positions.word[i] = between(first_positions.word[i], second_positions.word[i], weight);
     }
     for (uint i = 2u * vertex; i < 2u * vertex + 2u; ++i) {
-        uvs.word[i] = floatBitsToUint(between(first_uvs.word[i], second_uvs.word[i]));
+        uvs.word[i] = between(first_uvs.word[i], second_uvs.word[i], weight);
     }
     uint x = 3u * vertex;
     vec3 normal = renormalised(vec3(
-        between(first_normals.word[x], second_normals.word[x]),
-        between(first_normals.word[x + 1u], second_normals.word[x + 1u]),
-        between(first_normals.word[x + 2u], second_normals.word[x + 2u])
+        uintBitsToFloat(between(first_normals.word[x], second_normals.word[x], weight)),
+        uintBitsToFloat(between(first_normals.word[x + 1u], second_normals.word[x + 1u], weight)),
+        uintBitsToFloat(between(first_normals.word[x + 2u], second_normals.word[x + 2u], weight))
     ));
     normals.word[x] = floatBitsToUint(normal.x);
     normals.word[x + 1u] = floatBitsToUint(normal.y);

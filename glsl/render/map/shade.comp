@@ -49,7 +49,7 @@ void main() {
         surface.normal = point.normal;
         surface.geometric_normal = point.geometric_normal;
         surface.shininess = material.shininess;
-        surface.diffuse = mapped_colour(scene, material.diffuse, material.diffuse_map, point.uv);
+        surface.diffuse = point.colour * mapped_colour(scene, material.diffuse, material.diffuse_map, point.uv);
         surface.specular = mapped_colour(scene, material.specular, material.specular_map, point.uv);
         surface.reserved0 = 0.0;
         surface.reserved1 = 0.0;

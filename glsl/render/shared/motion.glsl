@@ -33,6 +33,14 @@ vec3 motion_vec3(MotionFloatsIn values, uint i) {
     return vec3(values.word[3u * i], values.word[3u * i + 1u], values.word[3u * i + 2u]);
 }
 
+// The bits of a number on the way from one to another: exactly the first's where the two are equal, so that what stands still does not
+// tremble.
+uint between(uint first, uint second, float weight) {
+    float a = uintBitsToFloat(first);
+    float b = uintBitsToFloat(second);
+    return floatBitsToUint(a + (b - a) * weight);
+}
+
 // At length one; what has no direction stays as it is. Scaled first: a square would overflow or vanish.
 vec3 renormalised(vec3 v) {
     float largest = max(abs(v.x), max(abs(v.y), abs(v.z)));

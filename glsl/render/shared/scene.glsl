@@ -77,6 +77,7 @@ struct SceneTable {
     uvec2 normals;
     uvec2 uvs;
     uvec2 surrounds;
+    uvec2 colours; // of vertices, three floats each; 0 where no mesh has any
     uvec2 mesh_starts; // first triangle of each mesh
     uvec2 materials;
     uvec2 textures;
@@ -84,6 +85,7 @@ struct SceneTable {
     uvec2 srgb; // linear value of each of the 256 codes
     uvec2 lights;
     uvec2 panorama; // three floats a pixel, rows from the top
+    uvec2 reserved;
     vec3 ambient;
     uint triangle_count;
     Background background;

@@ -13,6 +13,7 @@ struct HitPoint {
     vec3 normal;
     vec3 geometric_normal;
     vec2 uv;
+    vec3 colour; // of the vertices
     uint material;
     uint mesh;
 };
@@ -106,6 +107,11 @@ HitPoint hit_point(SceneIn scene, Ray ray, Hit hit) {
     vec2 uv_b = uvs.uv[vertex.y];
     vec2 uv_c = uvs.uv[vertex.z];
     point.uv = uv_a * w + uv_b * hit.u + uv_c * hit.v;
+    point.colour = vec3(1.0);
+    if (scene.table.colours != uvec2(0u)) {
+        SceneFloats colours = SceneFloats(scene.table.colours);
+        point.colour = scene_vec3(colours, vertex.x) * w + scene_vec3(colours, vertex.y) * hit.u + scene_vec3(colours, vertex.z) * hit.v;
+    }
     Surround surround = Surrounds(scene.table.surrounds).triangle[hit.triangle];
     point.material = surround.material;
     point.mesh = surround.mesh;

@@ -1,7 +1,7 @@
 //! Twin of kernel `interpolate`.
 
 use crate::dispatch::workgroups;
-use crate::twin::motion::renormalised;
+use crate::twin::motion::{between, renormalised};
 
 /// The vertices of a key-frame as words.
 #[derive(Clone, Copy, Debug)]
@@ -27,10 +27,6 @@ pub fn interpolate(
     vertex_count: u32,
     weight: f32,
 ) {
-    let between = |a: u32, b: u32| {
-        let (a, b) = (f32::from_bits(a), f32::from_bits(b));
-        a + (b - a) * weight
-    };
     let invocations = workgroups(groups).flat_map(|group| group * map_size..(group + 1) * map_size);
     for vertex in invocations.filter(|vertex| *vertex < vertex_count) {
         let (threes, twos) = (3 * vertex as usize..3 * vertex as usize + 3, 2 * vertex as usize..2 * vertex as usize + 2);
@@ -41,13 +37,14 @@ pub fn interpolate(
             continue;
         }
         for i in threes.clone() {
-            positions[i] = between(first.positions[i], second.positions[i]).to_bits();
+            positions[i] = between(first.positions[i], second.positions[i], weight);
         }
         for i in twos {
-            uvs[i] = between(first.uvs[i], second.uvs[i]).to_bits();
+            uvs[i] = between(first.uvs[i], second.uvs[i], weight);
         }
         let x = threes.start;
-        let normal = renormalised(std::array::from_fn(|axis| between(first.normals[x + axis], second.normals[x + axis])));
+        let normal = |axis: usize| f32::from_bits(between(first.normals[x + axis], second.normals[x + axis], weight));
+        let normal = renormalised(std::array::from_fn(normal));
         normals[threes].copy_from_slice(&normal.map(f32::to_bits));
     }
 }

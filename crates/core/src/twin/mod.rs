@@ -19,6 +19,7 @@ pub mod gather;
 pub mod gather_records;
 pub mod geometry_scan;
 pub mod interpolate;
+pub mod interpolate_colours;
 pub mod morph;
 pub mod motion;
 pub mod overlap_count;

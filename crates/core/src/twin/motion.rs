@@ -31,6 +31,12 @@ pub struct ActiveTarget {
     pub reserved: u32,
 }
 
+/// The bits of a number on the way from one to another: exactly the first's where the two are equal.
+pub fn between(first: u32, second: u32, weight: f32) -> u32 {
+    let (a, b) = (f32::from_bits(first), f32::from_bits(second));
+    (a + (b - a) * weight).to_bits()
+}
+
 /// At length one; what has no direction stays as it is.
 pub fn renormalised(v: Vec3) -> Vec3 {
     let size = largest(v.map(f32::abs));

@@ -16,16 +16,17 @@ use std::{
     time::Instant,
 };
 
-/// How many vertices and triangles something has, or has room for.
+/// How many vertices and triangles something has, or has room for, and whether for colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Size {
     pub(super) vertices: u32,
     pub(super) triangles: u32,
+    pub(super) has_colours: bool,
 }
 
 impl Size {
     fn holds(self, other: Size) -> bool {
-        self.vertices >= other.vertices && self.triangles >= other.triangles
+        self.vertices >= other.vertices && self.triangles >= other.triangles && self.has_colours >= other.has_colours
     }
 }
 
@@ -49,6 +50,7 @@ pub(super) struct SlotLayout {
     pub(super) positions: u64,
     pub(super) normals: u64,
     pub(super) uvs: u64,
+    pub(super) colours: u64,
     pub(super) indices: u64,
     pub(super) materials: u64,
     end: u64,
@@ -64,8 +66,9 @@ impl SlotLayout {
             begin
         };
         let (positions, normals, uvs) = (part(vertices * 12), part(vertices * 12), part(vertices * 8));
+        let colours = part(if room.has_colours { vertices * 12 } else { 0 });
         let (indices, materials) = (part(triangles * 12), part(triangles * 4));
-        SlotLayout { positions, normals, uvs, indices, materials, end }
+        SlotLayout { positions, normals, uvs, colours, indices, materials, end }
     }
 }
 
@@ -271,6 +274,7 @@ impl Worker {
         let size = Size {
             vertices: count("vertices", frame.positions.len(), gridwalk::MAX_VERTICES)?,
             triangles: count("triangles", frame.indices.len(), gridwalk::MAX_TRIANGLES)?,
+            has_colours: !frame.colours.is_empty(),
         };
         // Copies that nobody came to read may still be under way.
         self.timeline.wait(slot.value)?;
@@ -285,6 +289,7 @@ impl Worker {
             Parcel { bytes: bytemuck::cast_slice(&frame.positions), offset: layout.positions },
             Parcel { bytes: bytemuck::cast_slice(&frame.normals), offset: layout.normals },
             Parcel { bytes: bytemuck::cast_slice(&frame.uvs), offset: layout.uvs },
+            Parcel { bytes: bytemuck::cast_slice(&frame.colours), offset: layout.colours },
         ];
         // In most sequences they are those that the slot holds already.
         if slot.value == 0 || !Arc::ptr_eq(&lists.indices, &had.indices) {
@@ -311,6 +316,7 @@ impl Worker {
         };
         room.vertices = larger(size.vertices, room.vertices, gridwalk::MAX_VERTICES);
         room.triangles = larger(size.triangles, room.triangles, gridwalk::MAX_TRIANGLES);
+        room.has_colours |= size.has_colours;
         if slot.room.holds(*room) {
             return Ok(());
         }

@@ -52,9 +52,7 @@ pub struct Player {
     /// Whether the grid is that of the scene as it is now.
     is_built: bool,
     timer: Timer,
-    interpolate: Pipeline,
-    place: Pipeline,
-    bend: BendKernels,
+    kernels: MotionKernels,
     animation: Animation,
     context: Context,
 }
@@ -63,6 +61,14 @@ impl std::fmt::Debug for Player {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Player").field("scene", &self.scene).field("grid", &self.grid).finish_non_exhaustive()
     }
+}
+
+/// The kernels that make a scene's vertices and triangles.
+struct MotionKernels {
+    interpolate: Pipeline,
+    interpolate_colours: Pipeline,
+    place: Pipeline,
+    bend: BendKernels,
 }
 
 /// A mesh as the player moves it.
@@ -127,7 +133,7 @@ impl Player {
         let mut meshes = Vec::with_capacity(motions.len());
         for (index, (mesh, motion)) in scene.meshes.iter().zip(motions).enumerate() {
             let range = gpu.ranges().get(index).copied().unwrap_or_default();
-            let size = Size { vertices: range.count, triangles: mesh.indices.len() as u32 };
+            let size = Size { vertices: range.count, triangles: mesh.indices.len() as u32, has_colours: !mesh.colours.is_empty() };
             rooms.push(size);
             let way = match motion {
                 Motion::Still => Way::Still,
@@ -170,9 +176,12 @@ impl Player {
             grid,
             is_built: true,
             timer: Timer::new(context)?,
-            interpolate: Pipeline::new(context, &kernels::INTERPOLATE, &[])?,
-            place: Pipeline::new(context, &kernels::PLACE, &[])?,
-            bend: BendKernels::new(context)?,
+            kernels: MotionKernels {
+                interpolate: Pipeline::new(context, &kernels::INTERPOLATE, &[])?,
+                interpolate_colours: Pipeline::new(context, &kernels::INTERPOLATE_COLOURS, &[])?,
+                place: Pipeline::new(context, &kernels::PLACE, &[])?,
+                bend: BendKernels::new(context)?,
+            },
             animation,
             context: context.clone(),
         })
@@ -316,12 +325,14 @@ impl Player {
         let mut ranges = Vec::with_capacity(self.meshes.len());
         let (mut vertices, mut triangles) = (0_u64, 0_u64);
         let mut is_enough = true;
+        let mut has_colours = arrays.colours.is_some();
         for (moving, range) in self.meshes.iter().zip(self.scene.ranges()) {
             let mut room = range.room;
             match &moving.motion {
                 Way::Keys { shelf, .. } => {
                     // Those read ahead count too: what is to come soon should not make the arrays anew once more.
-                    let Size { vertices: needed, triangles: more } = shelf.largest();
+                    let Size { vertices: needed, triangles: more, has_colours: coloured } = shelf.largest();
+                    has_colours |= coloured;
                     if needed > room {
                         room = u32::try_from(with_slack(needed.into(), room.into())).unwrap_or(u32::MAX);
                         is_enough = false;
@@ -338,11 +349,11 @@ impl Player {
             triangle_room = with_slack(triangles, triangle_room).min(u64::from(gridwalk::MAX_TRIANGLES).max(triangles));
             is_enough = false;
         }
-        if is_enough {
+        if is_enough && has_colours == arrays.colours.is_some() {
             return Ok(0);
         }
         let (vertices, triangles) = check_room(vertices, triangle_room)?;
-        let made = Arrays::new(&self.context, vertices, triangles)?;
+        let made = Arrays::new(&self.context, vertices, triangles, has_colours)?;
         for (((mesh_id, moving), range), mesh) in (0..).zip(&self.meshes).zip(&ranges).zip(&self.animation.scene.meshes) {
             if !matches!(moving.motion, Way::Keys { .. }) {
                 made.write_vertices(mesh, range.first)?;
@@ -364,7 +375,7 @@ impl Player {
                 Way::Bent { is_shown, .. } => *is_shown = false,
             }
         }
-        Ok(Arrays::BUFFERS)
+        Ok(self.scene.arrays().count())
     }
 
     /// What has to be done, and the counts that the scene will have.
@@ -416,7 +427,7 @@ impl Player {
         }
         let after = (after > 0).then(|| self.timeline.moment(after));
         let (context, scene, meshes, timer) = (&self.context, &self.scene, &self.meshes, &mut self.timer);
-        let (interpolate, place, bend) = (&self.interpolate, &self.place, &self.bend);
+        let kernels = &self.kernels;
         context.submit_after("the scene at a time", after, |cmd| {
             let mut recorder = Recorder::new(context, cmd, timer);
             recorder.step("update", "copy", |cmd| {
@@ -431,13 +442,13 @@ impl Player {
                 let (Some(moving), Some(range)) = (meshes.get(index), scene.ranges().get(index)) else { continue };
                 match &moving.motion {
                     Way::Still => {}
-                    Way::Keys { shelf, next, .. } => record_keys(&mut recorder, interpolate, scene.arrays(), range, shelf, next),
-                    Way::Bent { bent, .. } => bent.record(&mut recorder, bend, scene.arrays(), range),
+                    Way::Keys { shelf, next, .. } => record_keys(&mut recorder, kernels, scene.arrays(), range, shelf, next),
+                    Way::Bent { bent, .. } => bent.record(&mut recorder, &kernels.bend, scene.arrays(), range),
                 }
             }
             for &index in &work.triangles {
                 if let (Some(moving), Ok(mesh)) = (meshes.get(index), u32::try_from(index)) {
-                    record_triangles(&mut recorder, place, scene, moving, mesh);
+                    record_triangles(&mut recorder, &kernels.place, scene, moving, mesh);
                 }
             }
             Ok(())
@@ -544,7 +555,7 @@ fn bent(meshes: &[Moving], index: usize) -> Option<&Bent> {
 }
 
 /// Vertices between two key-frames.
-fn record_keys(recorder: &mut Recorder<'_>, interpolate: &Pipeline, arrays: &Arrays, range: &VertexRange, shelf: &Shelf, pair: &KeyPair) {
+fn record_keys(recorder: &mut Recorder<'_>, kernels: &MotionKernels, arrays: &Arrays, range: &VertexRange, shelf: &Shelf, pair: &KeyPair) {
     let (Some(first), Some(second)) = (shelf.slot(pair.first), shelf.slot(pair.second)) else { return };
     let (from, to) = (SlotLayout::new(first.room), SlotLayout::new(second.room));
     let (first_at, second_at) = (first.memory.address(), second.memory.address());
@@ -562,7 +573,22 @@ fn record_keys(recorder: &mut Recorder<'_>, interpolate: &Pipeline, arrays: &Arr
         vertex_count: first.size.vertices,
         weight: pair.weight,
     };
-    recorder.dispatch(interpolate, &push, map_groups(first.size.vertices));
+    recorder.dispatch(&kernels.interpolate, &push, map_groups(first.size.vertices));
+    if let Some(colours) = &arrays.colours {
+        // Colours of one alone stay as they are.
+        let weight = if second.size.has_colours { pair.weight } else { 0.0 };
+        let word_count = first.size.vertices.saturating_mul(3);
+        let push = push::InterpolateColours {
+            first_colours: first_at + from.colours,
+            second_colours: second_at + to.colours,
+            colours: colours.address() + begin * 12,
+            word_count,
+            weight,
+            has_colours: u32::from(first.size.has_colours),
+            padding: 0,
+        };
+        recorder.dispatch(&kernels.interpolate_colours, &push, map_groups(word_count));
+    }
 }
 
 /// Triangles of a mesh, to where they are now in the scene.

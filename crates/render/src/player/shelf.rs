@@ -137,9 +137,11 @@ impl Shelf {
     /// The most vertices and triangles of the key-frames that are here.
     pub(super) fn largest(&self) -> Size {
         self.places.iter().fold(Size::default(), |size, place| match place {
-            Place::Full { slot, .. } => {
-                Size { vertices: size.vertices.max(slot.size.vertices), triangles: size.triangles.max(slot.size.triangles) }
-            }
+            Place::Full { slot, .. } => Size {
+                vertices: size.vertices.max(slot.size.vertices),
+                triangles: size.triangles.max(slot.size.triangles),
+                has_colours: size.has_colours || slot.size.has_colours,
+            },
             _ => size,
         })
     }
