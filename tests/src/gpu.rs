@@ -283,6 +283,62 @@ impl Gpu {
         self.check_validation();
     }
 
+    /// As [`Gpu::launch`], of a map kernel that is not the library's, with workgroups of this size. On the shared device alone, which lives
+    /// as long as the pipelines that are kept for the next launch.
+    pub fn launch_alone(&self, kernel: &'static Kernel, size: u32, memory: &[&Guarded], words: &[u32], groups: [u32; 3]) {
+        assert!(std::ptr::eq(self, Gpu::shared()) && memory.len() == kernel.accesses.len(), "{}", kernel.name);
+        let mut push: Vec<u8> = memory.iter().flat_map(|memory| memory.region().address.to_ne_bytes()).collect();
+        push.extend(words.iter().flat_map(|word| word.to_ne_bytes()));
+        assert!(push.len() as u32 <= kernel.push_constant_size.next_multiple_of(8), "{}", kernel.name);
+        push.resize(kernel.push_constant_size as usize, 0);
+        let (layout, pipeline) = self.alone(kernel, size);
+        if !groups.contains(&0) {
+            let device = self.context.device();
+            // SAFETY: the caller gives memory as large as the kernel needs for these words; it outlives the submission; the push constants
+            // are as long as the layout's range.
+            self.submit(|cmd| unsafe {
+                device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline);
+                device.cmd_push_constants(cmd, layout, vk::ShaderStageFlags::COMPUTE, 0, &push);
+                device.cmd_dispatch(cmd, groups[0], groups[1], groups[2]);
+            });
+        }
+        for memory in memory {
+            memory.check();
+        }
+        self.check_validation();
+    }
+
+    fn alone(&self, kernel: &'static Kernel, size: u32) -> (vk::PipelineLayout, vk::Pipeline) {
+        type Made = (&'static str, u32, vk::PipelineLayout, vk::Pipeline);
+        static MADE: Mutex<Vec<Made>> = Mutex::new(Vec::new());
+        let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((.., layout, pipeline)) = made.iter().find(|(name, of_size, ..)| *name == kernel.name && *of_size == size) {
+            return (*layout, *pipeline);
+        }
+        let device = self.context.device();
+        let ranges = [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(kernel.push_constant_size)];
+        let entries = [vk::SpecializationMapEntry { constant_id: 0, offset: 0, size: 4 }];
+        let data = size.to_ne_bytes();
+        let constants = vk::SpecializationInfo::default().map_entries(&entries).data(&data);
+        // SAFETY: the device lives as long as the process; the SPIR-V is a kernel's, without descriptors, whose constant 0 is its size.
+        let (layout, pipeline) = unsafe {
+            let layout =
+                device.create_pipeline_layout(&vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&ranges), None).unwrap();
+            let module = device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(kernel.spirv), None).unwrap();
+            let stage = vk::PipelineShaderStageCreateInfo::default()
+                .stage(vk::ShaderStageFlags::COMPUTE)
+                .module(module)
+                .name(c"main")
+                .specialization_info(&constants);
+            let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
+            let pipelines = device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None).unwrap();
+            device.destroy_shader_module(module, None);
+            (layout, pipelines[0])
+        };
+        made.push((kernel.name, size, layout, pipeline));
+        (layout, pipeline)
+    }
+
     /// Runs one item of a build's plan on the memory as earlier ones left it.
     pub fn run_item(&self, built: &Built, item: &Item) {
         self.submit(|cmd| {

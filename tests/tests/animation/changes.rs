@@ -126,3 +126,89 @@ fn a_large_key_frame_goes_through_a_small_memory() {
         assert_eq!(run.scene().read_indices().unwrap(), mesh.indices, "key-frame {key}");
     }
 }
+
+/// A PLY file of a mesh, with colours of its vertices or without.
+fn ply(mesh: &Mesh, colour: Option<fn(usize) -> [u8; 3]>) -> String {
+    let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", mesh.positions.len());
+    text += "property float x\nproperty float y\nproperty float z\n";
+    if colour.is_some() {
+        text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    }
+    writeln!(text, "element face {}\nproperty list uchar int vertex_indices\nend_header", mesh.indices.len()).unwrap();
+    for (i, [x, y, z]) in mesh.positions.iter().enumerate() {
+        write!(text, "{x} {y} {z}").unwrap();
+        if let Some([r, g, b]) = colour.map(|colour| colour(i)) {
+            write!(text, " {r} {g} {b}").unwrap();
+        }
+        text.push('\n');
+    }
+    for [a, b, c] in &mesh.indices {
+        writeln!(text, "3 {a} {b} {c}").unwrap();
+    }
+    text
+}
+
+/// Colours of vertices that come with the second key-frame, are blended to the third, and are gone with the fourth.
+#[test]
+fn colours_of_vertices_come_and_go() {
+    let mesh = generate::sphere([0.0; 3], 1.0, 12);
+    let files = [
+        ply(&mesh, None),
+        ply(&mesh, Some(|i| [255, (i % 256) as u8, 40])),
+        ply(&mesh, Some(|i| [20, 200, (i * 3 % 256) as u8])),
+        ply(&mesh, None),
+    ];
+    let mut files: Vec<(String, String)> = files.into_iter().enumerate().map(|(i, text)| (format!("k{i}.ply"), text)).collect();
+    files
+        .push(("scene.toml".to_owned(), "ambient = 1.0\n[[mesh]]\nsequence = \"k#.ply\"\nfps = 1\n[[mesh]]\nshape = \"box\"\n".to_owned()));
+    let folder = folder(&files);
+    let moving = animation(folder.path());
+    let mut reader = moving.reader().unwrap();
+    let mut materials = moving.scene.materials.clone();
+    let mut keys: Vec<Mesh> = Vec::new();
+    for key in 0..4 {
+        let read = reader.read(0, key).unwrap();
+        materials.extend(read.added_materials);
+        keys.push(read.mesh);
+    }
+    let mut run = play(folder.path());
+    let mut pictures = Vec::new();
+    for key in [0, 1, 2, 3, 1, 0] {
+        seek(&mut run, key as f64, &[key as f64 + 1.0]);
+        let mut scene = moving.scene.clone();
+        scene.materials = materials.clone();
+        scene.meshes[0] = keys[key].clone();
+        let albedo = |layers: &Layers| bits(layers).into_iter().find(|(name, _)| name == "albedo").unwrap();
+        let picture = shoot_player(&run);
+        assert_eq!(albedo(&picture), albedo(&shoot_still(&scene)), "key-frame {key}");
+        pictures.push(picture);
+    }
+    assert!(differ(&pictures[0], &pictures[1]) && differ(&pictures[1], &pictures[2]));
+    seek(&mut run, 1.5, &[]);
+    let mut scene = moving.scene.clone();
+    scene.materials = materials;
+    scene.meshes[0] = keys[1].clone();
+    let colours = scene.meshes[0].colours.iter_mut().zip(&keys[2].colours);
+    colours.for_each(|(a, b)| *a = [0, 1, 2].map(|channel| a[channel] + (b[channel] - a[channel]) * 0.5));
+    let (found, expected) = (shoot_player(&run), shoot_still(&scene));
+    let floats = |layers: &Layers| layers.get("albedo").unwrap().floats().unwrap().to_vec();
+    assert!(floats(&found).iter().zip(floats(&expected)).all(|(a, b)| (a - b).abs() < 1e-6));
+    assert!(floats(&found) != floats(&pictures[1]));
+}
+
+/// What a material's diffuse colour says of a whole mesh, colours say of its vertices.
+#[test]
+fn colours_of_vertices_are_those_of_a_material() {
+    let mut scene = Scene { up: [0.0, 1.0, 0.0], ambient: [0.7; 3], ..Scene::default() };
+    let mesh = generate::sphere([0.0; 3], 1.0, 12);
+    scene.materials = vec![gridwalk_scene::Material { diffuse: [0.25, 0.5, 1.0], ..Default::default() }];
+    scene.meshes = vec![Mesh { materials: vec![0; mesh.indices.len()], ..mesh.clone() }];
+    let by_material = shoot_still(&scene);
+    scene.materials[0].diffuse = [0.5; 3];
+    let dull = shoot_still(&scene);
+    scene.meshes[0].colours = vec![[0.5, 1.0, 2.0]; mesh.positions.len()];
+    let by_colours = shoot_still(&scene);
+    let beauty = |layers: &Layers| layers.get("beauty").unwrap().floats().unwrap().to_vec();
+    assert!(beauty(&by_material).iter().zip(beauty(&by_colours)).all(|(a, b)| (a - b).abs() <= 1e-6));
+    assert!(beauty(&dull) != beauty(&by_colours));
+}

@@ -1,6 +1,7 @@
 //! Scenes that move: the kernels that move vertices, and the player that brings one time after another to the device.
 
 mod changes;
+mod deformed;
 mod errors;
 mod frames;
 mod kernels;

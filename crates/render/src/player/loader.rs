@@ -121,6 +121,8 @@ pub(super) struct Arrival {
     pub(super) read_ms: f64,
     pub(super) parse_ms: f64,
     pub(super) stage_ms: f64,
+    /// Whether a seek had to wait for it.
+    pub(super) was_waited_for: bool,
     /// Buffers that were made anew.
     pub(super) grown: u32,
 }

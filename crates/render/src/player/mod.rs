@@ -258,7 +258,7 @@ impl Player {
             }
         }
         while let Some(reply) = loader.poll() {
-            stats.grown += settle(meshes, animation, reply);
+            stats.grown += settle(meshes, animation, reply, false);
         }
         for (mesh, _, next) in shelves(meshes) {
             *next = animation.keys_at(mesh, time);
@@ -278,7 +278,7 @@ impl Player {
         }
         let begin = Instant::now();
         while shelves(meshes).any(|(_, shelf, next)| !keys(next).iter().all(|&key| shelf.is_settled(key))) {
-            stats.grown += settle(meshes, animation, loader.wait()?);
+            stats.grown += settle(meshes, animation, loader.wait()?, true);
             // The slot that is wanted may have been lent for something else till now.
             ask_for_needed(meshes, loader);
         }
@@ -481,7 +481,7 @@ impl Player {
 
     /// Adds what the key-frames took that this seek is the first to need.
     fn tell_news(&mut self, time: f64, stats: &mut SeekStats) -> Result<()> {
-        let mut host_ms = 0.0;
+        let mut beside_ms = 0.0;
         for (mesh, shelf, _) in shelves(&mut self.meshes) {
             for key in keys(&self.animation.keys_at(mesh, time)) {
                 let (Some(news), Some(slot)) = (shelf.news(key), shelf.slot(key)) else { continue };
@@ -491,13 +491,15 @@ impl Player {
                 stats.read_ms += news.read_ms;
                 stats.parse_ms += news.parse_ms;
                 stats.stage_ms += news.stage_ms;
-                stats.upload_ms += self.timeline.milliseconds(slot.number)?;
-                host_ms += news.read_ms + news.parse_ms + news.stage_ms;
+                let upload_ms = self.timeline.milliseconds(slot.number)?;
+                stats.upload_ms += upload_ms;
+                // Of what was waited for, the copies come after the wait.
+                beside_ms += news.read_ms + news.parse_ms + news.stage_ms + if news.was_waited_for { 0.0 } else { upload_ms };
                 stats.warnings.extend(news.warnings);
             }
         }
         // What was not waited for ran beside what the caller did before.
-        stats.hidden_ms = (host_ms + stats.upload_ms - stats.wait_ms).max(0.0);
+        stats.hidden_ms = (beside_ms - stats.wait_ms).max(0.0);
         Ok(())
     }
 }
@@ -533,11 +535,12 @@ fn ask_for_needed(meshes: &mut [Moving], loader: &Loader) {
 }
 
 /// Takes in what became of a key-frame; returns how many buffers were made anew for it.
-fn settle(meshes: &mut [Moving], animation: &mut Animation, reply: Reply) -> u32 {
+fn settle(meshes: &mut [Moving], animation: &mut Animation, reply: Reply, was_waited_for: bool) -> u32 {
     let Reply { mesh, key, slot, mut result } = reply;
     let mut grown = 0;
     if let Ok(arrival) = &mut result {
         grown = arrival.grown;
+        arrival.was_waited_for = was_waited_for;
         animation.scene.materials.append(&mut arrival.added_materials);
         animation.scene.textures.append(&mut arrival.added_textures);
     }
