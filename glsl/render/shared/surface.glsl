@@ -110,7 +110,11 @@ HitPoint hit_point(SceneIn scene, Ray ray, Hit hit) {
     point.colour = vec3(1.0);
     if (scene.table.colours != uvec2(0u)) {
         SceneFloats colours = SceneFloats(scene.table.colours);
-        point.colour = scene_vec3(colours, vertex.x) * w + scene_vec3(colours, vertex.y) * hit.u + scene_vec3(colours, vertex.z) * hit.v;
+        vec3 colour_a = scene_vec3(colours, vertex.x);
+        vec3 colour_b = scene_vec3(colours, vertex.y);
+        vec3 colour_c = scene_vec3(colours, vertex.z);
+        // Where all are white it is exactly white, as without any colours.
+        point.colour = colour_a + (colour_b - colour_a) * hit.u + (colour_c - colour_a) * hit.v;
     }
     Surround surround = Surrounds(scene.table.surrounds).triangle[hit.triangle];
     point.material = surround.material;

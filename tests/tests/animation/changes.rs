@@ -100,7 +100,7 @@ fn materials_and_textures_may_come_later() {
             scene.meshes[0] = read.mesh;
             let beauty = |layers: &Layers| bits(layers).swap_remove(0);
             let still = shoot_still(&scene);
-            assert_eq!(beauty(&shoot_player(&run)), beauty(&still), "key-frame {i}");
+            assert!(beauty(&shoot_player(&run)) == beauty(&still), "key-frame {i}");
             seek(&mut alone, f64::from(i) / fps, &[]);
             assert_same_picture(&format!("key-frame {i} alone"), &still, &shoot_player(&alone));
         }
@@ -180,7 +180,7 @@ fn colours_of_vertices_come_and_go() {
         scene.meshes[0] = keys[key].clone();
         let albedo = |layers: &Layers| bits(layers).into_iter().find(|(name, _)| name == "albedo").unwrap();
         let picture = shoot_player(&run);
-        assert_eq!(albedo(&picture), albedo(&shoot_still(&scene)), "key-frame {key}");
+        assert!(albedo(&picture) == albedo(&shoot_still(&scene)), "key-frame {key}");
         pictures.push(picture);
     }
     assert!(differ(&pictures[0], &pictures[1]) && differ(&pictures[1], &pictures[2]));
