@@ -114,6 +114,16 @@ pub(crate) struct RigTrack {
     pub(crate) number: usize,
 }
 
+impl RigTrack {
+    /// What tells how a mesh of a rig moves.
+    pub(crate) fn mesh(rig: &Arc<Rig>, number: usize, deformed: Option<Box<Deformed>>) -> (MeshTrack, Motion) {
+        match deformed {
+            Some(deformed) => (MeshTrack::Rig(Self { rig: rig.clone(), number }), Motion::Deformed(deformed)),
+            None => (MeshTrack::Still, Motion::Still),
+        }
+    }
+}
+
 /// How long something moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Course {

@@ -9,10 +9,11 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use toml::Spanned;
 
-use crate::animation::{CameraTrack, Course, KeyTrack, LightTrack, MeshTrack, Tracks};
+use crate::animation::{CameraTrack, Course, KeyTrack, LightTrack, MeshTrack, RigTrack, Tracks};
 use crate::assets::Assets;
 use crate::curve::{Curve, Interpolation};
 use crate::files::read_file;
+use crate::gltf::{self, Playing};
 use crate::key_reader::{Cache, KeyReader, first_mesh};
 use crate::load::{DEFAULT_AMBIENT, DEFAULT_BACKGROUND, default_lights, ending, folder_of};
 use crate::moving::{CAMERA_BOUNDED, CameraCurve, LIGHT_BOUNDED, LightCurve, PLACED_BOUNDED, PlacedCurve, Turntable, camera_values};
@@ -243,6 +244,7 @@ struct MeshEntry {
     start: Option<Real>,
     #[serde(rename = "loop")]
     looped: Option<bool>,
+    clip: Option<Spanned<String>>,
     interpolate: Option<bool>,
     first: Option<u64>,
     last: Option<u64>,
@@ -383,6 +385,12 @@ pub(crate) fn open(path: &Path, options: &LoadOptions) -> Result<Animation> {
     builder.finish(scene, given.as_ref())
 }
 
+/// By the ending of a file's name.
+fn is_gltf(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    matches!(ending.as_deref(), Some("gltf" | "glb"))
+}
+
 #[derive(Clone, Copy)]
 struct Source<'a> {
     file: &'a str,
@@ -510,7 +518,11 @@ impl Builder<'_> {
         let mut meshes = Vec::new();
         for entry in description.mesh {
             let at = entry.span().start;
-            meshes.push(self.mesh(entry.into_inner(), at, &named)?);
+            let entry = entry.into_inner();
+            match &entry.file {
+                Some(file) if is_gltf(file.get_ref()) => meshes.append(&mut self.gltf(&entry, file, at, &named)?),
+                _ => meshes.push(self.mesh(entry, at, &named)?),
+            }
         }
         let lights = description.light.into_iter().map(|entry| self.moving_light(entry)).collect::<Result<Vec<_>>>()?;
         let background = match description.background {
@@ -879,6 +891,57 @@ impl Builder<'_> {
         self.assets.files.find(&self.root, name.get_ref()).map_err(|error| self.source.error_in(name.span(), error.to_string()))
     }
 
+    /// The meshes of a glTF file.
+    fn gltf(&mut self, entry: &MeshEntry, file: &Spanned<String>, at: usize, named: &[String]) -> Result<Vec<Mesh>> {
+        let source = self.source;
+        self.refuse_shape_keys(entry, at)?;
+        let others = [
+            ("shape", entry.shape.is_some()),
+            ("sequence", entry.sequence.is_some()),
+            ("fps", entry.fps.is_some()),
+            ("interpolate", entry.interpolate.is_some()),
+            ("first", entry.first.is_some()),
+            ("last", entry.last.is_some()),
+            ("interpolation", entry.interpolation.is_some()),
+            ("key", !entry.key.is_empty()),
+        ];
+        if let Some((key, _)) = others.iter().find(|(_, given)| *given) {
+            return Err(source.error(at, format!("a mesh of a glTF file has no {key}; it moves as its clip says")));
+        }
+        let material = match &entry.material {
+            Some(name) => Some(source.choose("material", name, &named.iter().map(String::as_str).collect::<Vec<_>>())? as u32),
+            None => None,
+        };
+        let playing = Playing {
+            clip: entry.clip.as_ref().map(|clip| clip.get_ref().as_str()),
+            placement: self.transform(entry)?.rows(),
+            start: entry.start.map_or(0.0, |start| start.0),
+            looped: entry.looped.unwrap_or(true),
+        };
+        let path = self.find(file)?;
+        let bytes = read_file(&path, self.assets.options.max_mesh_bytes).map_err(|error| self.in_place(file.span(), error))?;
+        let loaded = gltf::read(&mut self.assets, &bytes, file.get_ref(), Some(&folder_of(&path)), &playing).map_err(|error| {
+            let span = entry.clip.as_ref().filter(|_| matches!(error, Error::UnknownClip { .. })).map_or(file.span(), Spanned::span);
+            self.in_place(span, error)
+        })?;
+        let mut meshes = loaded.meshes;
+        let single = meshes.len() == 1;
+        for mesh in &mut meshes {
+            let name = entry.name.as_ref().map(|name| if single { name.clone() } else { format!("{name}/{}", mesh.name) });
+            Edit { name, material, uv_scale: entry.uv_scale.map(|scale| scale.0), ..Edit::default() }.apply(mesh);
+        }
+        let rig = Arc::new(loaded.rig);
+        for (number, deformed) in loaded.deformed.into_iter().enumerate() {
+            let (track, motion) = RigTrack::mesh(&rig, number, deformed);
+            if matches!(motion, Motion::Deformed(_)) {
+                self.courses.push(rig.course());
+            }
+            self.tracks.meshes.push(track);
+            self.motions.push(motion);
+        }
+        Ok(meshes)
+    }
+
     fn mesh(&mut self, mut entry: MeshEntry, at: usize, named: &[String]) -> Result<Mesh> {
         let source = self.source;
         let material = match &entry.material {
@@ -969,7 +1032,7 @@ impl Builder<'_> {
     /// An error of a file that the scene file names; those that tell their own place are left as they are.
     fn in_place(&self, span: Range<usize>, error: Error) -> Error {
         match error {
-            error @ (Error::Obj { .. } | Error::Ply { .. } | Error::Description { .. }) => error,
+            error @ (Error::Obj { .. } | Error::Ply { .. } | Error::Gltf { .. } | Error::Description { .. }) => error,
             error => self.source.error_in(span, error.to_string()),
         }
     }
@@ -1045,13 +1108,20 @@ impl Builder<'_> {
             ("fps", entry.fps.is_some()),
             ("start", entry.start.is_some()),
             ("loop", entry.looped.is_some() && entry.key.is_empty()),
+            ("clip", entry.clip.is_some()),
             ("interpolate", entry.interpolate.is_some()),
             ("first", entry.first.is_some()),
             ("last", entry.last.is_some()),
         ];
         match keys.iter().find(|(_, given)| *given) {
             Some((key, _)) => {
-                Err(self.source.error(at, format!("{key} belongs to a sequence{}", if *key == "loop" { " or to keys" } else { "" })))
+                let owner = match *key {
+                    "clip" => "a glTF file",
+                    "start" => "a sequence or a glTF file",
+                    "loop" => "a sequence, a glTF file or to keys",
+                    _ => "a sequence",
+                };
+                Err(self.source.error(at, format!("{key} belongs to {owner}")))
             }
             None => Ok(()),
         }

@@ -12,6 +12,27 @@
 //! | `name.gltf`, `name.glb` | a scene with all that moves in it |
 //! | `name.toml`, or a folder with a `scene.toml` | a scene file |
 //!
+//! # glTF
+//! glTF 2.0 as `.gltf` (with `data:` uris, or files beside it) and `.glb`. Each primitive of each mesh on a node of the default scene is a
+//! mesh. One clip is played, and begins anew at its end: nodes move by `STEP`, `LINEAR` and `CUBICSPLINE` keys, vertices by up to eight
+//! joints and any number of morph targets. What no clip moves is put where it stands. Cameras and lights (`KHR_lights_punctual`) hang on
+//! nodes and move with them; a candela counts as 1 of radiant intensity and a lux as 1 of irradiance, so that white is white under π lux.
+//!
+//! Metallic-roughness materials become those of this crate. With base colour c, metallic m, roughness r, gloss g = (1 - r)² and the
+//! reflectance f of a dielectric (0.04, or as `KHR_materials_ior` and `KHR_materials_specular` say):
+//! - a surface with m g of 0.05 and more mirrors, weighted by c m g + f (1 - m) g; a rough metal mirrors less and scatters the rest;
+//! - diffuse is c (1 - m g);
+//! - the Blinn-Phong exponent is n = 2 / r⁴ - 2, and a surface that is no mirror has highlights of (c m g + f (1 - m)) (n + 8) / 8, 1 at most;
+//! - a texture of metallic and roughness makes diffuse and specular textures, and its mean roughness the exponent;
+//! - alpha is cut at `alphaCutoff`, or for `BLEND` at one half, which a warning tells; both sides of all surfaces are seen;
+//! - `KHR_materials_unlit` emits its base colour; `KHR_materials_emissive_strength` multiplies the emission; emission lights nothing else.
+//!
+//! Textures of a material are looked up by the coordinates of its first one (base colour, metallic-roughness, emission, normals), with
+//! `KHR_texture_transform` put into them; one that wants others is not used, which a warning tells. So are textures that are not repeated,
+//! occlusion textures, points and lines. An extension that is not known is told by a warning where it is used, and refused where it is
+//! required. Morphed meshes without normals get those of their faces.
+//!
+//! # Scene files
 //! The scene file is TOML. All keys are optional but those that its errors ask for:
 //!
 //! ```toml
@@ -62,6 +83,12 @@
 //! scale = 2                                # then rotate (degrees about x, y, z), then translate; or matrix, rows of 4 numbers
 //! rotate = [0, 45, 0]
 //! translate = [0, 1, 0]
+//!
+//! [[mesh]]
+//! file = "fox.glb"                         # all its meshes, moving as its clip says; its cameras and lights are not taken
+//! clip = "Run"                             # the first without
+//! start = 0.5                              # seconds into the clip at time 0
+//! loop = false                             # begins anew at its end without
 //!
 //! [[mesh]]
 //! shape = "sphere"                         # plane, box, quad, torus, knot, soup, bumpy

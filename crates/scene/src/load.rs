@@ -8,7 +8,7 @@ use crate::Scene;
 use crate::animation::{CameraTrack, KeyTrack, LightTrack, MeshTrack, RigTrack};
 use crate::assets::Assets;
 use crate::files::{read_file, read_stream};
-use crate::gltf;
+use crate::gltf::{self, Playing};
 use crate::key_reader::{Cache, KeyReader, first_mesh};
 use crate::mesh_file;
 use crate::sequence::{Pattern, Range, Sequence, pattern_of};
@@ -46,7 +46,10 @@ pub fn open(path: &Path, options: &LoadOptions, animation: &AnimationOptions) ->
             let bytes = read_file(path, options.max_mesh_bytes)?;
             load_mesh(&bytes, path, path.parent(), options).map(Animation::still)
         }
-        (Some("gltf" | "glb"), _) => open_gltf(path, options, animation.clip.as_deref()),
+        (Some("gltf" | "glb"), _) => {
+            let bytes = read_file(path, options.max_mesh_bytes)?;
+            open_gltf(bytes, path, Some(&folder_of(path)), options, animation.clip.as_deref())
+        }
         (Some("toml"), _) => crate::description::open(path, options),
         _ if path.exists() => Err(Error::UnknownFormat { path: path.to_owned() }),
         // A name that does not exist is told with its neighbours rather than by its ending.
@@ -85,12 +88,12 @@ fn open_sequence(pattern: Pattern, folder: &Path, options: &LoadOptions) -> Resu
     Ok(animation)
 }
 
-fn open_gltf(path: &Path, options: &LoadOptions, clip: Option<&str>) -> Result<Animation> {
-    let bytes = read_file(path, options.max_mesh_bytes)?;
-    let folder = folder_of(path);
-    let mut assets = Assets::new(Some(&folder), options)?;
+/// A glTF file from memory. Files that it names are looked for below `folder`.
+fn open_gltf(bytes: Vec<u8>, path: &Path, folder: Option<&Path>, options: &LoadOptions, clip: Option<&str>) -> Result<Animation> {
+    let mut assets = Assets::new(folder, options)?;
     let root = assets.files.clone();
-    let loaded = gltf::read(&mut assets, &bytes, &path.to_string_lossy(), root.root(), clip)?;
+    let playing = Playing { clip, ..Playing::default() };
+    let loaded = gltf::read(&mut assets, &bytes, &path.to_string_lossy(), root.root(), &playing)?;
     drop(bytes);
     let mut scene = assets.scene(loaded.meshes);
     scene.background = DEFAULT_BACKGROUND;
@@ -109,23 +112,21 @@ fn open_gltf(path: &Path, options: &LoadOptions, clip: Option<&str>) -> Result<A
         animation.tracks.lights = (0..rig.light_count()).map(|at| LightTrack::Rig(track(at))).collect();
         animation.set_course(&[rig.course()], None, None);
     }
-    let still = |deformed: &Option<_>| deformed.is_none();
-    animation.tracks.meshes = loaded
-        .deformed
-        .iter()
-        .enumerate()
-        .map(|(at, mesh)| if still(mesh) { MeshTrack::Still } else { MeshTrack::Rig(track(at)) })
-        .collect();
-    animation.motions = loaded.deformed.into_iter().map(|mesh| mesh.map_or(Motion::Still, Motion::Deformed)).collect();
+    let moving = loaded.deformed.into_iter().enumerate().map(|(at, deformed)| RigTrack::mesh(&rig, at, deformed));
+    (animation.tracks.meshes, animation.motions) = moving.unzip();
     Ok(animation)
 }
 
-/// Reads an OBJ or PLY stream, packed by gzip or not, such as standard input. Materials are looked for below `folder`; without one none is opened.
+/// Reads an OBJ, PLY or GLB stream, the first two packed by gzip or not, such as standard input. Materials and what a GLB file names are
+/// looked for below `folder`; without one none is opened.
 ///
 /// # Errors
 /// As [`load`]; the file in messages is `-`.
 pub fn load_reader(reader: &mut dyn Read, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
     let bytes = read_stream(reader, Path::new("-"), options.max_mesh_bytes)?;
+    if bytes.starts_with(b"glTF") {
+        return open_gltf(bytes, Path::new("-"), folder, options, None).map(|animation| animation.scene);
+    }
     load_mesh(&bytes, Path::new("-"), folder, options)
 }
 

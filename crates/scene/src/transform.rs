@@ -39,11 +39,16 @@ impl Transform {
     }
 
     /// Three rows of four numbers, the last of each the translation's.
-    pub(crate) fn matrix(&self) -> [[f32; 4]; 3] {
+    pub(crate) fn rows(&self) -> [[f64; 4]; 3] {
         std::array::from_fn(|row| {
             let [x, y, z] = self.rows[row];
-            [x, y, z, self.translation[row]].map(single)
+            [x, y, z, self.translation[row]]
         })
+    }
+
+    /// The same in single precision.
+    pub(crate) fn matrix(&self) -> [[f32; 4]; 3] {
+        self.rows().map(|row| row.map(single))
     }
 
     fn determinant(&self) -> f64 {

@@ -746,3 +746,61 @@ fn broken_containers_are_told() {
     );
     assert!(case(b"{ \"asset\": ").contains("cannot be read as glTF 2.0: EOF"));
 }
+
+#[test]
+fn in_a_scene_file() {
+    let mut maker = Maker::triangle();
+    maker.push("nodes", json!({ "mesh": 0, "translation": [0, 0, 5] }));
+    maker.json["scenes"][0]["nodes"] = json!([0, 1]);
+    maker.animate(0, "translation", "LINEAR", &[0.0, 2.0], &[0.0, 0.0, 0.0, 8.0, 0.0, 0.0]);
+    maker.json["animations"][0]["name"] = json!("go");
+    let open_toml = |text: &str| {
+        let folder = folder(&[("scene.toml", text.as_bytes()), ("sub/a.glb", &maker.glb())]);
+        let opened = open(folder.path(), &LoadOptions::default(), &AnimationOptions::default());
+        opened.map_err(|error| super::without_folder(&error.to_string(), folder.path()))
+    };
+    let place = |animation: &Animation, time: f64| {
+        let Motion::Deformed(deformed) = &animation.motions[0] else { panic!("it moves") };
+        let mut pose = gridwalk_scene::Pose::default();
+        animation.pose(0, time, &mut pose);
+        assert_eq!(deformed.positions, TRIANGLE);
+        pose.matrices[0].map(|row| row[3])
+    };
+    let animation = open_toml(
+        "[[mesh]]\nfile = \"sub/a.glb\"\nclip = \"go\"\nname = \"n\"\nscale = [-2, 2, 2]\ntranslate = [0, 1, 0]\nstart = 0.5\n\
+         [[mesh]]\nshape = \"box\"\n",
+    )
+    .unwrap();
+    let scene = &animation.scene;
+    assert_eq!(scene.meshes.iter().map(|mesh| mesh.name.as_str()).collect::<Vec<_>>(), ["n/node 0", "n/node 1", "box"]);
+    assert_eq!(scene.meshes[0].positions[1], [-6.0, 1.0, 0.0], "a quarter of the way, then placed");
+    assert_eq!(scene.meshes[0].indices, [[0, 2, 1]]);
+    assert_eq!(scene.meshes[1].positions[0], [0.0, 1.0, 10.0]);
+    assert_eq!((animation.duration, animation.cyclic, animation.motions.len()), (2.0, true, 3));
+    assert!(matches!(animation.motions[1], Motion::Still));
+    assert_eq!([0.0, 1.5, 1.75, 2.0].map(|time| place(&animation, time)[0]), [-4.0, -16.0, -2.0, -4.0]);
+    let once = open_toml("[[mesh]]\nfile = \"sub/a.glb\"\nloop = false\nstart = 0.5\n").unwrap();
+    assert_eq!((once.duration, once.cyclic), (1.5, false));
+    assert_eq!([0.0, 1.5, 9.0].map(|time| place(&once, time)[0]), [2.0, 8.0, 8.0]);
+
+    assert_eq!(
+        open_toml("[[mesh]]\nfile = \"sub/a.glb\"\nclip = \"gone\"\n").unwrap_err(),
+        "DIR/scene.toml:3: there is no clip \"gone\"; there are \"go\""
+    );
+    assert_eq!(
+        open_toml("[[mesh]]\nfile = \"sub/a.glb\"\nfps = 4\n").unwrap_err(),
+        "DIR/scene.toml:1: a mesh of a glTF file has no fps; it moves as its clip says"
+    );
+    assert_eq!(open_toml("[[mesh]]\nshape = \"box\"\nclip = \"go\"\n").unwrap_err(), "DIR/scene.toml:1: clip belongs to a glTF file");
+}
+
+#[test]
+fn from_a_stream() {
+    let stream = gridwalk_scene::load_reader(&mut Maker::triangle().glb().as_slice(), None, &LoadOptions::default()).unwrap();
+    assert_eq!(stream.meshes[0].positions, TRIANGLE);
+    let mut outward = Maker::triangle();
+    outward.json["buffers"] = json!([{ "byteLength": 1, "uri": "a.bin" }]);
+    let bytes = glb(&serde_json::to_vec(&outward.json).unwrap(), &[]);
+    let error = gridwalk_scene::load_reader(&mut bytes.as_slice(), None, &LoadOptions::default()).unwrap_err();
+    assert!(error.to_string().starts_with("-: buffer 0: names the file \"a.bin\", but is a stream"), "{error}");
+}

@@ -47,21 +47,40 @@ pub(crate) struct Loaded {
     pub(crate) rig: Rig,
 }
 
-/// Reads a file's bytes. `folder` is where files that it names are looked for; `clip` chooses a clip by name, the first without.
-pub(crate) fn read(assets: &mut Assets, bytes: &[u8], file: &str, folder: Option<&Path>, clip: Option<&str>) -> Result<Loaded> {
+/// How a file is played in a scene.
+#[derive(Clone, Debug)]
+pub(crate) struct Playing<'a> {
+    /// By name; the first without.
+    pub(crate) clip: Option<&'a str>,
+    /// Where the file's world is in the scene's.
+    pub(crate) placement: affine::Affine,
+    /// Seconds into the clip at time 0; finite.
+    pub(crate) start: f64,
+    /// Whether the clip begins anew at its end.
+    pub(crate) looped: bool,
+}
+
+impl Default for Playing<'_> {
+    fn default() -> Self {
+        Self { clip: None, placement: affine::IDENTITY, start: 0.0, looped: true }
+    }
+}
+
+/// Reads a file's bytes. `folder` is where files that it names are looked for.
+pub(crate) fn read(assets: &mut Assets, bytes: &[u8], file: &str, folder: Option<&Path>, playing: &Playing<'_>) -> Result<Loaded> {
     let document = Document::open(bytes, file, folder, &assets.files.clone(), &assets.options.clone())?;
-    let loaded = build(&document, assets, clip);
+    let loaded = build(&document, assets, playing);
     assets.warnings.append(&mut document.take_warnings());
     loaded
 }
 
-fn build(document: &Document, assets: &mut Assets, clip: Option<&str>) -> Result<Loaded> {
+fn build(document: &Document, assets: &mut Assets, playing: &Playing<'_>) -> Result<Loaded> {
     let clips = rig::read_clips(document)?;
-    let chosen = match clip {
+    let chosen = match playing.clip {
         Some(name) => Some(clips.iter().position(|clip| clip.name == name).ok_or_else(|| no_clip(name, &clips))?),
         None => (!clips.is_empty()).then_some(0),
     };
-    let mut rig = Rig::new(document, chosen)?;
+    let mut rig = Rig::new(document, chosen, playing)?;
     let mut cameras = Vec::new();
     let mut names = HashMap::new();
     let mut builder = Builder {

@@ -6,6 +6,7 @@ use gltf::json::Index;
 use gltf::json::animation::{Animation, Interpolation, Property, Sampler};
 use gltf::json::validation::Checked;
 
+use super::Playing;
 use super::affine::{Affine, IDENTITY, from_columns, from_parts, point, product};
 use super::document::{Document, absent, named};
 use super::track::{Between, Track};
@@ -29,6 +30,9 @@ pub(crate) struct Rig {
     duration: f64,
     /// From the file's world to the scene's.
     placement: Affine,
+    /// Seconds into the clip at time 0.
+    start: f64,
+    looped: bool,
 }
 
 #[derive(Debug)]
@@ -82,7 +86,7 @@ pub(super) struct HangingLight {
 
 impl Rig {
     /// The nodes and skins, with the tracks of a clip.
-    pub(super) fn new(document: &Document, clip: Option<usize>) -> Result<Rig> {
+    pub(super) fn new(document: &Document, clip: Option<usize>, playing: &Playing<'_>) -> Result<Rig> {
         let mut nodes = read_nodes(document)?;
         let order = link(document, &mut nodes)?;
         let mut duration = 0.0;
@@ -106,7 +110,9 @@ impl Rig {
             cameras: Vec::new(),
             lights: Vec::new(),
             duration,
-            placement: IDENTITY,
+            placement: playing.placement,
+            start: playing.start,
+            looped: playing.looped,
         })
     }
 
@@ -115,9 +121,9 @@ impl Rig {
         self.duration
     }
 
-    /// A clip is played again and again.
     pub(crate) fn course(&self) -> Course {
-        Course { seconds: self.duration, looped: true, fps: None }
+        let seconds = if self.looped { self.duration } else { (self.duration - self.start).max(0.0) };
+        Course { seconds, looped: self.looped, fps: None }
     }
 
     pub(super) fn joint_count(&self, skin: u32) -> usize {
@@ -137,9 +143,15 @@ impl Rig {
         self.duration > 0.0 && (weights || placed)
     }
 
-    /// Time within the clip: it is played again and again.
+    /// Time within the clip. Its end is shown where it is asked for, though it begins anew there.
     fn local_time(&self, time: f64) -> f64 {
-        if time <= self.duration { time.max(0.0) } else { time.rem_euclid(self.duration.max(f64::MIN_POSITIVE)) }
+        let time = time + self.start;
+        let inside = (0.0..=self.duration).contains(&time);
+        match self.looped && self.duration > 0.0 {
+            _ if inside => time,
+            true if time.is_finite() => time.rem_euclid(self.duration),
+            _ => time.clamp(0.0, self.duration),
+        }
     }
 
     /// The matrices of a mesh, in double precision.
