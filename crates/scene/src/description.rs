@@ -1118,7 +1118,7 @@ impl Builder<'_> {
                 let owner = match *key {
                     "clip" => "a glTF file",
                     "start" => "a sequence or a glTF file",
-                    "loop" => "a sequence, a glTF file or to keys",
+                    "loop" => "a sequence, keys or a glTF file",
                     _ => "a sequence",
                 };
                 Err(self.source.error(at, format!("{key} belongs to {owner}")))

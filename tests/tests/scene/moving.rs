@@ -226,8 +226,8 @@ fn what_is_wrong_is_told_with_its_line() {
         ),
         (format!("{point}loop = true\n"), "1: interpolation and loop of a light belong to keys"),
         (format!("{point}[[light.key]]\ntime = 0\nirradiance = 1\n"), "5: a point light has no irradiance; give intensity"),
-        (format!("{mesh}loop = true\n"), "1: loop belongs to a sequence or to keys"),
-        (format!("{mesh}start = 1\n"), "1: start belongs to a sequence"),
+        (format!("{mesh}loop = true\n"), "1: loop belongs to a sequence, keys or a glTF file"),
+        (format!("{mesh}start = 1\n"), "1: start belongs to a sequence or a glTF file"),
         (format!("{mesh}interpolation = \"step\"\n"), "3: interpolation of a mesh belongs to keys; a sequence has interpolate"),
         (
             format!("{mesh}[[mesh.key]]\ntime = 0\n[[mesh.key]]\ntime = 1\nscale = [1, -1, 1]\n"),

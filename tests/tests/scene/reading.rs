@@ -2,6 +2,7 @@
 
 use gridwalk_scene::{Background, Bounds, Framing, Light, LoadOptions, frame_camera, load, load_reader};
 
+use super::gltf::Maker;
 use super::{folder, png, tga};
 
 const QUAD: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
@@ -109,7 +110,10 @@ fn the_scene_file_of_the_documentation_means_what_it_says() {
         .take_while(|line| *line != "//! ```")
         .map(|line| format!("{}\n", line.trim_start_matches("//!").trim_start()))
         .collect();
-    let folder = folder(&[("scene.toml", example.as_bytes()), ("teapot.obj", QUAD.as_bytes())]);
+    let mut fox = Maker::triangle();
+    fox.animate(0, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    fox.json["animations"][0]["name"] = "Run".into();
+    let folder = folder(&[("scene.toml", example.as_bytes()), ("teapot.obj", QUAD.as_bytes()), ("fox.glb", &fox.glb())]);
     let scene = load(folder.path(), &LoadOptions::default()).unwrap();
     assert_eq!(scene.cameras[0].name, "front");
     assert_eq!(scene.camera(None).unwrap().eye, [0.0, 1.0, 5.0]);
@@ -124,8 +128,9 @@ fn the_scene_file_of_the_documentation_means_what_it_says() {
     assert_eq!((direction, outer_degrees, intensity), ([0.0, -1.0, 0.0], 30.0, [20.0, 18.0, 15.0]));
     let steel = &scene.materials[1];
     assert_eq!((steel.name.as_str(), steel.illumination, steel.diffuse, steel.specular), ("steel", 3, [0.1; 3], [0.8; 3]));
-    assert_eq!(scene.meshes.iter().map(|mesh| mesh.name.as_str()).collect::<Vec<_>>(), ["teapot", "sphere"]);
-    assert!(scene.meshes[1].materials.iter().all(|&material| material == 1));
+    assert_eq!(scene.meshes.iter().map(|mesh| mesh.name.as_str()).collect::<Vec<_>>(), ["teapot", "node 0", "sphere"]);
+    assert_eq!(scene.meshes[1].positions[0], [0.5, 0.0, 0.0], "half a second into the clip");
+    assert!(scene.meshes[2].materials.iter().all(|&material| material == 1));
 }
 
 #[test]
