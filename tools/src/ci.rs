@@ -138,8 +138,12 @@ fn spirv_val(root: &Root) -> Result<Outcome> {
         return Ok(Outcome::Skipped("spirv-val is not installed: apt-get install spirv-tools".to_owned()));
     }
     let mut count = 0;
+    let mut owners = vec![root.join("examples")];
     for owner in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
-        for module in fs::read_dir(owner?.path().join("spirv")).into_iter().flatten() {
+        owners.push(owner?.path());
+    }
+    for owner in owners {
+        for module in fs::read_dir(owner.join("spirv")).into_iter().flatten() {
             let module = module?.path();
             if module.extension() == Some(OsStr::new("spv")) {
                 process::run(Command::new("spirv-val").args(["--target-env", "vulkan1.2"]).arg(&module))?;

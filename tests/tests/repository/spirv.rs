@@ -51,7 +51,8 @@ fn copy_of_sources() -> tempfile::TempDir {
     let root = root();
     let mut open = vec![PathBuf::from("glsl")];
     for owner in &OWNERS {
-        open.extend(["spirv", "src", "glsl"].map(|name| Path::new("crates").join(owner.name).join(name)));
+        open.extend(["spirv", "src", "glsl"].map(|name| Path::new(owner.folder).join(name)));
+        open.extend(owner.sources.iter().map(|(_, folder)| PathBuf::from(folder)));
     }
     while let Some(folder) = open.pop() {
         fs::create_dir_all(copy.path().join(&folder)).unwrap();

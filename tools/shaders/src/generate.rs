@@ -86,7 +86,7 @@ fn compile(root: &Path, compiler: &Compiler, kernel: &KernelSource) -> Result<Re
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_2 as u32);
     options.set_optimization_level(OptimizationLevel::Zero);
     options.set_include_callback(|name, _, _, _| {
-        let path = format!("glsl/{name}");
+        let path = source::include_path(name);
         let content = fs::read_to_string(root.join(&path)).map_err(|error| format!("{path}: {error} (names count from glsl/)"))?;
         Ok(ResolvedInclude { resolved_name: path, content })
     });
@@ -120,19 +120,26 @@ fn assemble(root: &Path, owner: &'static Owner, kernels: Vec<(KernelSource, Refl
     if kernels.is_empty() {
         return Ok(Generated { owner, kernels, files: BTreeMap::new() });
     }
-    let hosts = host_layouts(root, owner, &kernels)?;
-    let source = table::format(root, &table::write(owner, &kernels, &hosts))?;
+    let table = match owner.kernel_types {
+        Some(types) => {
+            let hosts = host_layouts(root, owner, &kernels)?;
+            Some(table::format(root, &table::write(types, &kernels, &hosts))?)
+        }
+        None => None,
+    };
     let manifest = Manifest {
         generation: GENERATION,
         compiler: manifest::compiler(root)?,
         flags: FLAGS.to_owned(),
-        host_types: manifest::host_types_hash(root)?,
-        table: manifest::hash(source.as_bytes()),
+        host_types: table.as_ref().map(|_| manifest::host_types_hash(root)).transpose()?,
+        table: table.as_ref().map(|source| manifest::hash(source.as_bytes())),
         include,
         kernels: entries,
     };
     let manifest = format!("# Made by `{}`; do not edit.\n{}", manifest::CURE, toml::to_string(&manifest)?);
-    files.insert("src/kernels.rs".to_owned(), source.into_bytes());
+    if let Some(source) = table {
+        files.insert("src/kernels.rs".to_owned(), source.into_bytes());
+    }
     files.insert("spirv/manifest.toml".to_owned(), manifest.into_bytes());
     Ok(Generated { owner, kernels, files })
 }

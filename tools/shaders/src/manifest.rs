@@ -30,10 +30,12 @@ pub struct Manifest {
     pub compiler: String,
     /// [`FLAGS`].
     pub flags: String,
-    /// Hash of [`HOST_TYPES`].
-    pub host_types: String,
-    /// Hash of the crate's `src/kernels.rs`.
-    pub table: String,
+    /// Hash of [`HOST_TYPES`], for a crate with a kernel table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub host_types: Option<String>,
+    /// Hash of the crate's `src/kernels.rs`, if it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<String>,
     /// The public include in one piece, if the crate carries one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub include: Option<Entry>,
@@ -111,7 +113,7 @@ pub fn stale(root: &Path) -> Result<Vec<String>> {
 
 fn stale_of(root: &Path, owner: &Owner, stale: &mut Vec<String>) -> Result<()> {
     let kernels = owner.kernels(root)?;
-    let folder = format!("crates/{}", owner.name);
+    let folder = owner.folder;
     let path = format!("{folder}/spirv/manifest.toml");
     if !root.join(&path).exists() {
         if !kernels.is_empty() {
@@ -126,7 +128,7 @@ fn stale_of(root: &Path, owner: &Owner, stale: &mut Vec<String>) -> Result<()> {
     if manifest.compiler != compiler(root)? {
         stale.push(format!("{path}: made with {}, but Cargo.lock has {}", manifest.compiler, compiler(root)?));
     }
-    if manifest.host_types != host_types_hash(root)? {
+    if manifest.host_types.as_ref().is_some_and(|hash| host_types_hash(root).ok().as_ref() != Some(hash)) {
         stale.push(format!("{folder}/src/kernels.rs: {HOST_TYPES} has changed"));
     }
     let mut output = |path: &str, hash_wanted: &str| {
@@ -137,7 +139,9 @@ fn stale_of(root: &Path, owner: &Owner, stale: &mut Vec<String>) -> Result<()> {
             Ok(_) => {}
         }
     };
-    output("src/kernels.rs", &manifest.table);
+    if let Some(hash) = &manifest.table {
+        output("src/kernels.rs", hash);
+    }
     for entry in manifest.kernels.iter().chain(&manifest.include) {
         output(&entry.output, &entry.output_hash);
     }
@@ -153,7 +157,7 @@ fn stale_of(root: &Path, owner: &Owner, stale: &mut Vec<String>) -> Result<()> {
             stale.push(format!("{path}: {} is new", kernel.path));
         }
     }
-    for spirv in source::files(&root.join(&folder).join("spirv"), "spv")? {
+    for spirv in source::files(&root.join(folder).join("spirv"), "spv")? {
         let name = spirv.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         if !manifest.kernels.iter().any(|entry| entry.output == format!("spirv/{name}")) {
             stale.push(format!("{folder}/spirv/{name}: belongs to no kernel"));

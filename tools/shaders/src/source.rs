@@ -9,34 +9,63 @@ use anyhow::{Context, Result, bail};
 /// A crate that owns kernels.
 #[derive(Debug)]
 pub struct Owner {
-    /// Folder below `crates/`.
+    /// Its name in options and in [`HOST_TYPES`](crate::manifest::HOST_TYPES).
     pub name: &'static str,
-    /// Folder of its sources, below the root; holds `map/` and `cooperative/`.
-    pub sources: &'static str,
-    /// Module path, seen from the crate, of the types of the kernel table.
-    pub kernel_types: &'static str,
+    /// Folder of the crate, below the root.
+    pub folder: &'static str,
+    /// Kind of the kernels and the folder of their sources, below the root.
+    pub sources: &'static [(&'static str, &'static str)],
+    /// Module path, seen from the crate, of the types of its kernel table; `None` for a crate that has no such table.
+    pub kernel_types: Option<&'static str>,
     /// The public include that the crate carries in one piece, below `glsl/`.
     pub public_include: Option<&'static str>,
 }
 
 /// All crates that own kernels.
-pub const OWNERS: [Owner; 2] = [
-    Owner { name: "gridwalk", sources: "glsl", kernel_types: "gridwalk_core::kernel", public_include: Some("shared/gridwalk.glsl") },
-    Owner { name: "render", sources: "glsl/render", kernel_types: "gridwalk::kernel", public_include: None },
+pub const OWNERS: [Owner; 3] = [
+    Owner {
+        name: "gridwalk",
+        folder: "crates/gridwalk",
+        sources: &[("map", "glsl/map"), ("cooperative", "glsl/cooperative")],
+        kernel_types: Some("gridwalk_core::kernel"),
+        public_include: Some(PUBLIC_INCLUDE),
+    },
+    Owner {
+        name: "render",
+        folder: "crates/render",
+        sources: &[("map", "glsl/render/map"), ("cooperative", "glsl/render/cooperative")],
+        kernel_types: Some("gridwalk::kernel"),
+        public_include: None,
+    },
+    Owner {
+        name: "examples",
+        folder: "examples",
+        sources: &[("map", "examples/shaders")],
+        kernel_types: None,
+        public_include: None,
+    },
 ];
+
+/// What users of the library include, below `glsl/`.
+const PUBLIC_INCLUDE: &str = "shared/gridwalk.glsl";
+
+/// The path below the root of what an `#include` names: names count from `glsl/`, and the public include is known by its bare name too, as
+/// users have it.
+pub fn include_path(name: &str) -> String {
+    format!("glsl/{}", if name == "gridwalk.glsl" { PUBLIC_INCLUDE } else { name })
+}
 
 impl Owner {
     /// The crate's folder.
     pub fn folder(&self, root: &Path) -> PathBuf {
-        root.join("crates").join(self.name)
+        root.join(self.folder)
     }
 
     /// The crate's kernels, ordered by name. Two kernels of one name are an error.
     pub fn kernels(&self, root: &Path) -> Result<Vec<KernelSource>> {
         let mut kernels = Vec::new();
-        for kind in ["map", "cooperative"] {
-            let folder = format!("{}/{kind}", self.sources);
-            for path in files(&root.join(&folder), "comp")? {
+        for &(kind, folder) in self.sources {
+            for path in files(&root.join(folder), "comp")? {
                 let name = path.file_stem().and_then(|s| s.to_str()).with_context(|| format!("{}: not UTF-8", path.display()))?;
                 if !name.starts_with(|c: char| c.is_ascii_lowercase())
                     || !name.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'_'))
@@ -114,7 +143,7 @@ pub fn closure(root: &Path, path: &str) -> Result<BTreeMap<String, String>> {
         let text = read(root, &path)?;
         for (index, line) in text.lines().enumerate() {
             if let Some(name) = included(line) {
-                let target = format!("glsl/{name}");
+                let target = include_path(name);
                 if !root.join(&target).is_file() {
                     bail!("{path}:{}: no such include: {target} (names count from glsl/)", index + 1);
                 }
@@ -143,7 +172,7 @@ fn expand(root: &Path, path: &str, seen: &mut Vec<String>, out: &mut String) -> 
     for line in text.lines() {
         match included(line) {
             Some(name) => {
-                let target = format!("glsl/{name}");
+                let target = include_path(name);
                 if !seen.contains(&target) {
                     seen.push(target.clone());
                     expand(root, &target, seen, out)?;

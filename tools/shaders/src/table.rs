@@ -8,15 +8,15 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
-use crate::source::{KernelSource, Owner};
+use crate::source::KernelSource;
 use crate::spirv::{Layout, Reflected};
 
-/// The unformatted table of one crate. `hosts` are host types by GLSL name, with their layouts.
-pub fn write(owner: &Owner, kernels: &[(KernelSource, Reflected)], hosts: &[(String, Layout)]) -> String {
+/// The unformatted table of one crate. `kernel_types` is the module of the table's types, `hosts` are host types by GLSL name, with their layouts.
+pub fn write(kernel_types: &str, kernels: &[(KernelSource, Reflected)], hosts: &[(String, Layout)]) -> String {
     let mut out = format!(
         "//! The kernels of this crate: SPIR-V and what reflection found in it. Made by `cargo tool shaders`; edit the GLSL instead.\n\n\
          use {}::{{{}Kernel, Kind}};\n\n",
-        owner.kernel_types,
+        kernel_types,
         if kernels.iter().any(|(_, r)| !r.accesses.is_empty()) { "Access, " } else { "" }
     );
     out.push_str(
