@@ -82,7 +82,7 @@ impl Gpu {
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(cmd)];
         let info = vk::SubmitInfo2::default().wait_semaphore_infos(&waits).command_buffer_infos(&commands);
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the device has done with the command buffer, and what is recorded lives until it has done so again.
+        // SAFETY: the device has done with the command buffer, and what is recorded lives until it has done with it again.
         unsafe {
             self.device.begin_command_buffer(cmd, &begin)?;
             record()?;
@@ -91,6 +91,7 @@ impl Gpu {
         }
     }
 
+    /// A pipeline of a shader of the engine's own.
     fn pipeline(&self, layout: vk::PipelineLayout, spirv: &[u8]) -> Result<vk::Pipeline> {
         let code: Vec<u32> = bytemuck::pod_collect_to_vec(spirv);
         // SAFETY: the SPIR-V comes from the GLSL in `shaders/`, whose push constants fit the layout.
@@ -109,7 +110,6 @@ impl Gpu {
 /// they come from: any allocator serves, as long as its memory has device addresses.
 struct Arena {
     buffer: vk::Buffer,
-    memory: vk::DeviceMemory,
     address: vk::DeviceAddress,
     mapped: *mut u8,
     used: u64,
@@ -136,11 +136,10 @@ impl Arena {
             let memory = gpu.device.allocate_memory(&info, None)?;
             gpu.device.bind_buffer_memory(buffer, memory, 0)?;
             let address = gpu.device.get_buffer_device_address(&vk::BufferDeviceAddressInfo::default().buffer(buffer));
-            let mapped = match properties.contains(vk::MemoryPropertyFlags::HOST_VISIBLE) {
-                true => gpu.device.map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty())?.cast(),
-                false => std::ptr::null_mut(),
-            };
-            Ok(Arena { buffer, memory, address, mapped, used: 0 })
+            let map = || gpu.device.map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty());
+            let visible = properties.contains(vk::MemoryPropertyFlags::HOST_VISIBLE);
+            let mapped = if visible { map()?.cast() } else { std::ptr::null_mut() };
+            Ok(Arena { buffer, address, mapped, used: 0 })
         }
     }
 
@@ -172,8 +171,7 @@ struct Slot {
 }
 
 fn write_png(path: &Path, rgba: &[u8]) -> Result<()> {
-    let file = fs::File::create(path).with_context(|| path.display().to_string())?;
-    let mut encoder = png::Encoder::new(BufWriter::new(file), WIDTH, HEIGHT);
+    let mut encoder = png::Encoder::new(BufWriter::new(fs::File::create(path)?), WIDTH, HEIGHT);
     encoder.set_color(png::ColorType::Rgba);
     Ok(encoder.write_header()?.write_image_data(rgba)?)
 }
@@ -182,11 +180,8 @@ fn main() -> Result<()> {
     let folder = env::args_os().nth(1).map_or_else(PathBuf::new, PathBuf::from);
     let gpu = Gpu::new()?;
     let Gpu { instance, physical_device, device, .. } = &gpu;
-    let pipeline_cache = vk::PipelineCache::null(); // an engine passes its own
-    let desc = DeviceDesc { instance, physical_device: *physical_device, device, pipeline_cache, shape: None, debug_utils: None };
     // SAFETY: `requirements` are enabled on the device, which is destroyed after the tracer, after all work has ended.
-    let tracer = unsafe { Tracer::new(&desc)? };
-
+    let tracer = unsafe { Tracer::new(&DeviceDesc::new(instance, *physical_device, device))? };
     let mut memory = Arena::new(&gpu, vk::MemoryPropertyFlags::DEVICE_LOCAL)?;
     let mut host = Arena::new(&gpu, vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT)?;
     let (floor, ball) = (generate::plane([12.0, 12.0], 1), generate::sphere([0.0; 3], 1.0, 96));
@@ -200,13 +195,13 @@ fn main() -> Result<()> {
     host.bytes(&indices)?.copy_from_slice(cast_slice(&triangles));
 
     // Pairs (cell, triangle) cannot be known beforehand. Four a triangle are a good guess; this one is too low, to show what then happens.
-    let options = BuildOptions::default();
-    let mut capacity = Capacity { triangles: triangle_count, cells: triangle_count * options.density as u32, pairs: triangle_count };
+    let cells = triangle_count * BuildOptions::DEFAULT_DENSITY as u32;
+    let mut capacity = Capacity { triangles: triangle_count, cells, pairs: triangle_count };
     let mut sizes = tracer.build_sizes(&capacity)?;
     let mut scratch = memory.take(sizes.scratch.size)?;
 
-    // SAFETY: the device lives; all this is destroyed at the end of `main`, after the device has done its work.
-    let (pool, buffers, layout, [built, shaded]) = unsafe {
+    // SAFETY: the device lives.
+    let (buffers, layout, [built, shaded]) = unsafe {
         let reset = vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER;
         let pool = device.create_command_pool(&vk::CommandPoolCreateInfo::default().queue_family_index(gpu.family).flags(reset), None)?;
         let buffers =
@@ -215,7 +210,7 @@ fn main() -> Result<()> {
         let layout = device.create_pipeline_layout(&vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&push), None)?;
         let mut kind = vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);
         let info = vk::SemaphoreCreateInfo::default().push_next(&mut kind);
-        (pool, buffers, layout, [device.create_semaphore(&info, None)?, device.create_semaphore(&info, None)?])
+        (buffers, layout, [device.create_semaphore(&info, None)?, device.create_semaphore(&info, None)?])
     };
     let deform = gpu.pipeline(layout, include_bytes!("spirv/embed_deform.spv"))?;
     let shade = gpu.pipeline(layout, include_bytes!("spirv/embed_shade.spv"))?;
@@ -229,16 +224,14 @@ fn main() -> Result<()> {
         }
     };
     let slot = |cmds: &[vk::CommandBuffer]| -> Result<Slot> {
-        let mut vertices = || memory.take(rest.size);
-        let (positions, normals) = (vertices()?, vertices()?);
+        let (positions, normals) = (memory.take(rest.size)?, memory.take(rest.size)?);
         let (grid, report) = (memory.take(sizes.grid.size)?, host.take(sizes.report.size)?);
         let picture = host.take(u64::from(4 * WIDTH * HEIGHT))?;
         Ok(Slot { cmds: [cmds[0], cmds[1]], positions, normals, grid, report, picture, pending: None })
     };
     let mut slots = buffers.chunks(2).map(slot).collect::<Result<Vec<_>>>()?;
 
-    let mut pictures: Vec<Vec<u8>> = Vec::new();
-    let (mut next, mut time) = (0, 0);
+    let (mut next, mut time, mut pictures) = (0, 0, Vec::new());
     for turn in 0.. {
         // Take the slot's last frame out of it.
         if let Some((frame, end)) = slots[turn % 2].pending.take() {
@@ -259,9 +252,8 @@ fn main() -> Result<()> {
                 }
                 next = frame;
             } else {
-                let Report { triangles, dropped, resolution: [x, y, z], .. } = report;
-                eprintln!("frame {frame}: {triangles} triangles in {x} x {y} x {z} cells");
-                ensure!((triangles, dropped) == (triangle_count, 0), "frame {frame}: the mesh has changed");
+                eprintln!("frame {frame}: {} triangles, {:?} cells", report.triangles, report.resolution);
+                ensure!((report.triangles, report.dropped) == (triangle_count, 0), "the mesh has changed");
                 let picture = host.bytes(&slots[turn % 2].picture)?;
                 write_png(&folder.join(format!("embed-{frame}.png")), picture)?;
                 pictures.push(picture.to_vec());
@@ -270,7 +262,6 @@ fn main() -> Result<()> {
         if next == TIMES.len() {
             if slots.iter().all(|slot| slot.pending.is_none()) { break } else { continue }
         }
-
         let Slot { cmds: [build_cmd, shade_cmd], positions, normals, grid, report, picture, .. } = slots[turn % 2];
         time += 1;
         // The host has waited for the slot's last frame: its regions are free.
@@ -278,7 +269,7 @@ fn main() -> Result<()> {
             let numbers = [vertex_count, floor_vertices, TIMES[next].to_bits()];
             dispatch(build_cmd, deform, &[rest.address, positions.address, normals.address], &numbers, [vertex_count.div_ceil(64), 1]);
             let geometry = Geometry { positions, vertex_count, indices, triangle_count };
-            let info = BuildInfo { geometry, grid, scratch, report, capacity, options, timestamps: None };
+            let info = BuildInfo::new(geometry, grid, scratch, report, capacity);
             // SAFETY: the regions are of this device, large enough by `build_sizes`, and free; the command buffer is recording.
             unsafe {
                 // From the vertices' writer to the build, and from the last build that used the scratch.
@@ -302,23 +293,7 @@ fn main() -> Result<()> {
 
     ensure!(pictures[0] == pictures[4] && pictures[0] != pictures[1], "the same moment gives the same picture, another one another");
     ensure!(host.bytes(&rest)? == cast_slice::<[f32; 3], u8>(&vertices), "only the shaders write, and not here");
-    // SAFETY: the host has waited for the last frame, so nothing is in use.
-    unsafe {
-        device.device_wait_idle()?;
-        drop(tracer);
-        for pipeline in [deform, shade] {
-            device.destroy_pipeline(pipeline, None);
-        }
-        for Arena { buffer, memory, .. } in [memory, host] {
-            device.destroy_buffer(buffer, None);
-            device.free_memory(memory, None);
-        }
-        device.destroy_pipeline_layout(layout, None);
-        device.destroy_semaphore(built, None);
-        device.destroy_semaphore(shaded, None);
-        device.destroy_command_pool(pool, None);
-        device.destroy_device(None);
-        instance.destroy_instance(None);
-    }
+    // The device has done with all that was recorded: the tracer may go, and after it the device. (The process frees the engine's own.)
+    drop(tracer);
     Ok(())
 }

@@ -61,8 +61,8 @@ void main() {
     }
     uint state = pixel.y * width + pixel.x;
     vec2 screen = (2.0 * (vec2(pixel) + 0.5) - vec2(width, height)) / float(height);
-    vec3 origin = vec3(0.0, 2.2, 5.0);
-    vec3 direction = normalize(vec3(screen.x, -screen.y - 0.5, -2.0));
+    vec3 origin = vec3(0.0, 2.1, 4.0);
+    vec3 direction = normalize(vec3(screen.x, -screen.y - 0.6, -2.0));
     vec3 colour = vec3(0.0);
     vec3 weight = vec3(1.0);
     for (uint bounce = 0u; bounce < 2u; ++bounce) {
