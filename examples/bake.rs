@@ -18,7 +18,7 @@ use gridwalk_render::gridwalk::{Ray, UNFINISHED};
 use gridwalk_render::{BuildSettings, Context, ContextDesc, GpuScene, GridBuilder, cast, occluded};
 use gridwalk_scene::{Camera, LoadOptions, Mesh, generate::Random, load};
 
-const RAYS_EACH: usize = 64;
+const RAYS_EACH: usize = 32;
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;
 
@@ -130,7 +130,7 @@ fn main() -> Result<()> {
     let hits = cast(&grid, &camera_rays(&scene.camera(None).context("no camera")?))?;
     let shade = |hit: &gridwalk_render::gridwalk::Hit| {
         if !hit.is_hit() {
-            return encoded(0.9);
+            return encoded(0.2);
         }
         let corners = whole.indices[hit.triangle as usize].map(|vertex| open[vertex as usize]);
         encoded(Vec3::from(corners).dot(vec3(1.0 - hit.u - hit.v, hit.u, hit.v)))

@@ -4,6 +4,7 @@
 mod animation;
 mod capi;
 mod cli;
+mod examples;
 mod image;
 mod kernels;
 mod package;
