@@ -4,6 +4,8 @@
 //! creates nothing, and it never allocates device memory, maps, submits or waits. It implements chapter 3 of a thesis on GPU grid
 //! construction for ray tracing dynamic scenes (Ivson, PUC-Rio): the grid is cheap enough to be rebuilt from nothing in every frame.
 //!
+//! [`integrating`] is the guide, from the device to the picture; what follows here are the rules.
+//!
 //! # The contract
 //!
 //! **Device.** Vulkan 1.3 with the features of [`requirements::features`] enabled: `bufferDeviceAddress` and `synchronization2`.
@@ -96,6 +98,9 @@ mod shape;
 mod sizes;
 mod sync;
 mod tracer;
+
+#[doc = include_str!("../docs/integrating.md")]
+pub mod integrating {}
 
 pub use ash;
 pub use error::{Error, Result};
