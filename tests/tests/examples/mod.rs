@@ -113,3 +113,19 @@ fn bake() {
     let grey = |share: f32| colours.iter().filter(|colour| colour[0] == colour[1] && colour[0] <= share).count();
     assert!(grey(0.3) * 50 > colours.len() && grey(0.8) < colours.len(), "dark places and light ones");
 }
+
+#[test]
+fn wgpu() {
+    let folder = run("gridwalk-example-wgpu", "--bin", "example-wgpu", &[]);
+    check(folder.path(), "wgpu.png", "wgpu");
+}
+
+/// An example is read whole.
+#[test]
+fn examples_are_short() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    for files in [&["embed.rs"][..], &["bake.rs"], &["wgpu/src/main.rs", "wgpu/src/passes.wgsl"]] {
+        let lines: usize = files.iter().map(|file| fs::read_to_string(folder.join(file)).unwrap().lines().count()).sum();
+        assert!(lines < 300, "{files:?}: {lines} lines");
+    }
+}

@@ -6,13 +6,14 @@ use std::process::Command;
 use super::metadata;
 
 /// What a crate of this workspace may import of it: the arrows of the architecture. `gridwalk-tests` may import anything.
-const ALLOWED: [(&str, &[&str]); 9] = [
+const ALLOWED: [(&str, &[&str]); 10] = [
     ("gridwalk-core", &[]),
     ("gridwalk", &["gridwalk-core"]),
     ("gridwalk-scene", &["gridwalk-core"]),
     ("gridwalk-render", &["gridwalk", "gridwalk-scene"]),
     ("gridwalk-cli", &["gridwalk-render"]),
     ("gridwalk-capi", &["gridwalk"]),
+    ("gridwalk-example-wgpu", &["gridwalk"]),
     ("gridwalk-shaders", &[]),
     // `cargo tool shaders` must run when a crate does not compile because its kernel table is stale.
     ("gridwalk-tools", &[]),

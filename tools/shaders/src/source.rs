@@ -37,13 +37,7 @@ pub const OWNERS: [Owner; 3] = [
         kernel_types: Some("gridwalk::kernel"),
         public_include: None,
     },
-    Owner {
-        name: "examples",
-        folder: "examples",
-        sources: &[("map", "examples/shaders")],
-        kernel_types: None,
-        public_include: None,
-    },
+    Owner { name: "examples", folder: "examples", sources: &[("map", "examples/shaders")], kernel_types: None, public_include: None },
 ];
 
 /// What users of the library include, below `glsl/`.
