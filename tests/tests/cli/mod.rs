@@ -1,5 +1,6 @@
 //! The program, run as its users run it: what it writes where, and with which status it ends.
 
+mod animate;
 mod cast;
 mod diff;
 mod json;

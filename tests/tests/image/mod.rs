@@ -4,6 +4,7 @@ mod diff;
 mod exr;
 mod file;
 mod heatmap;
+mod movie;
 mod png;
 mod tonemap;
 

@@ -1,7 +1,7 @@
 //! `gridwalk info`.
 
 use gridwalk_render::estimate_grid;
-use gridwalk_render::gridwalk_scene::Scene;
+use gridwalk_render::gridwalk_scene::{Animation, Motion};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -27,6 +27,7 @@ struct Report {
     texture_bytes: u64,
     lights: usize,
     cameras: Vec<String>,
+    animation: Option<Course>,
     grid: Option<Grid>,
     warnings: Vec<String>,
 }
@@ -43,20 +44,73 @@ struct Grid {
     scratch_bytes: u64,
 }
 
+/// The course of time, of a scene that has one.
+#[derive(Serialize)]
+struct Course {
+    duration: f64,
+    fps: f64,
+    frames: u64,
+    cyclic: bool,
+    clips: Vec<Clip>,
+}
+
+#[derive(Serialize)]
+struct Clip {
+    name: String,
+    duration: f64,
+}
+
 #[derive(Serialize)]
 struct Mesh {
     name: String,
     triangles: u64,
     vertices: u64,
+    /// `still`, `key-frames` or `deformed`.
+    motion: &'static str,
+    key_frames: u32,
+    morph_targets: usize,
+    /// Of joints or nodes that move its vertices.
+    matrices: u32,
+}
+
+impl Mesh {
+    fn new(animation: &Animation, index: usize) -> Option<Mesh> {
+        let mesh = animation.scene.meshes.get(index)?;
+        let (motion, morph_targets, matrices) = match animation.motions.get(index) {
+            Some(Motion::Keys) => ("key-frames", 0, 0),
+            Some(Motion::Deformed(deformed)) => ("deformed", deformed.targets.len(), deformed.matrix_count),
+            _ => ("still", 0, 0),
+        };
+        let key_frames = if motion == "key-frames" { animation.key_count(index) } else { 0 };
+        let (triangles, vertices) = (mesh.indices.len() as u64, mesh.positions.len() as u64);
+        Some(Mesh { name: mesh.name.clone(), triangles, vertices, motion, key_frames, morph_targets, matrices })
+    }
+
+    /// How it moves, in words.
+    fn movement(&self) -> String {
+        let count = |number: usize, one: &str, many: &str| match number {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            number => Some(format!("{number} {many}")),
+        };
+        let parts = [
+            count(self.key_frames as usize, "key-frame", "key-frames"),
+            count(self.morph_targets, "morph target", "morph targets"),
+            count(self.matrices as usize, "matrix", "matrices"),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        if parts.is_empty() { String::new() } else { format!("; moves by {}", parts.join(", ")) }
+    }
 }
 
 /// Tells what a scene holds.
 pub fn run(low: &Info) -> Result<Exit> {
     let source = Source::new(&low.scene);
-    let scene = scene::read(&source, &load_options(&low.limits))?;
-    let mut report = report(&source, &scene);
+    let animation = scene::open(&source, &load_options(&low.limits), None)?;
+    let scene = &animation.scene;
+    let mut report = report(&source, &animation);
     if report.triangles > report.dropped {
-        let grid = estimate_grid(&scene, &session::build_settings(&high::grid(&low.grid), &scene.defaults))?;
+        let grid = estimate_grid(scene, &session::build_settings(&high::grid(&low.grid), &scene.defaults))?;
         report.grid = Some(Grid {
             resolution: grid.resolution,
             density: grid.density,
@@ -75,7 +129,8 @@ pub fn run(low: &Info) -> Result<Exit> {
     Ok(Exit::Ok)
 }
 
-fn report(source: &Source, scene: &Scene) -> Report {
+fn report(source: &Source, animation: &Animation) -> Report {
+    let scene = &animation.scene;
     let (mut dropped, mut degenerate) = (0, 0);
     for mesh in &scene.meshes {
         for triangle in &mesh.indices {
@@ -90,11 +145,7 @@ fn report(source: &Source, scene: &Scene) -> Report {
     Report {
         header: Header::new("info"),
         scene: source.name(),
-        meshes: scene
-            .meshes
-            .iter()
-            .map(|mesh| Mesh { name: mesh.name.clone(), triangles: mesh.indices.len() as u64, vertices: mesh.positions.len() as u64 })
-            .collect(),
+        meshes: (0..scene.meshes.len()).filter_map(|index| Mesh::new(animation, index)).collect(),
         triangles: scene.triangle_count(),
         vertices: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),
         dropped,
@@ -105,9 +156,21 @@ fn report(source: &Source, scene: &Scene) -> Report {
         texture_bytes: scene.textures.iter().map(|texture| u64::from(texture.width) * u64::from(texture.height) * 4).sum(),
         lights: scene.lights.len(),
         cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
+        animation: course(animation),
         grid: None,
         warnings: scene.warnings.clone(),
     }
+}
+
+fn course(animation: &Animation) -> Option<Course> {
+    let &Animation { duration, fps, cyclic, .. } = animation;
+    (duration > 0.0 || !animation.clips.is_empty()).then(|| Course {
+        duration,
+        fps,
+        frames: animation.frame_count(fps),
+        cyclic,
+        clips: animation.clips.iter().map(|clip| Clip { name: clip.name.clone(), duration: clip.duration }).collect(),
+    })
 }
 
 fn area(corners: [[f32; 3]; 3]) -> f64 {
@@ -132,13 +195,21 @@ fn text(report: &Report) -> String {
         }
     }
     for mesh in &report.meshes {
-        let _ = writeln!(text, "mesh        {} ({} triangles, {} vertices)", mesh.name, mesh.triangles, mesh.vertices);
+        let moves = mesh.movement();
+        let _ = writeln!(text, "mesh        {} ({} triangles, {} vertices{moves})", mesh.name, mesh.triangles, mesh.vertices);
     }
     let _ = writeln!(text, "materials   {}: {}", report.materials.len(), report.materials.join(", "));
     let _ = writeln!(text, "textures    {} ({} MiB)", report.textures, report.texture_bytes >> 20);
     let _ = writeln!(text, "lights      {}", report.lights);
     let cameras = if report.cameras.is_empty() { "none; the automatic one".to_owned() } else { report.cameras.join(", ") };
     let _ = writeln!(text, "cameras     {cameras}");
+    if let Some(Course { duration, fps, frames, cyclic, clips }) = &report.animation {
+        let again = if *cyclic { ", and again from the first" } else { "" };
+        let _ = writeln!(text, "animation   {duration:.3} s, {frames} frames at {fps} a second{again}");
+        for clip in clips {
+            let _ = writeln!(text, "clip        {} ({:.3} s)", clip.name, clip.duration);
+        }
+    }
     if let Some(grid) = &report.grid {
         let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
         let resolution = grid.resolution.map(|n| n.to_string()).join(" x ");
