@@ -1,1 +1,381 @@
+//! `animate`: which frames, into which files, and what becomes of them when something ends it.
 
+use std::fs;
+use std::path::Path;
+
+use super::{Run, decode_png, entries, gridwalk, prepared, read_png, words};
+use crate::image::movie::{decode_apng, decode_gif, yuv};
+
+/// A triangle with a corner at x.
+fn key(x: f32) -> String {
+    format!("v 0 0 0\nv {x} 0 0\nv 0 1 0\nf 1 2 3\n")
+}
+
+/// A folder with the key-frames `move.0.obj` and so on, but those that are left out, and the still scene `two.obj`.
+fn moving(keys: u32, but: &[u32]) -> tempfile::TempDir {
+    let folder = super::folder();
+    for number in (0..keys).filter(|number| !but.contains(number)) {
+        fs::write(folder.path().join(format!("move.{number}.obj")), key(2.0 - 0.25 * number as f32)).unwrap();
+    }
+    folder
+}
+
+const SMALL: &str = "animate move.#.obj --size 20x15 --eye 0.4,0.5,4";
+
+fn animate(folder: &Path, options: &str) -> Run {
+    gridwalk(folder, words(&format!("{SMALL} {options}")))
+}
+
+/// The JSON lines of a run: those of the frames, and the last one.
+#[track_caller]
+fn lines(run: &Run) -> (Vec<serde_json::Value>, serde_json::Value) {
+    let mut lines: Vec<serde_json::Value> = run.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let last = lines.pop().unwrap();
+    assert_eq!(last["schema"], "gridwalk.animate/1");
+    assert!(lines.iter().all(|line| line["schema"] == "gridwalk.animate.frame/1"));
+    assert_eq!(last["frames"].as_u64(), Some(lines.len() as u64));
+    (lines, last)
+}
+
+fn numbers(lines: &[serde_json::Value]) -> Vec<u64> {
+    lines.iter().map(|line| line["frame"].as_u64().unwrap()).collect()
+}
+
+fn pixels(folder: &Path, name: &str) -> Vec<u8> {
+    read_png(&folder.join(name)).3
+}
+
+/// Files of a folder that were not there in the beginning.
+fn results(folder: &Path) -> Vec<String> {
+    entries(folder).into_iter().filter(|name| !name.ends_with(".obj")).collect()
+}
+
+/// The heart of the matter: a frame of a run is the frame rendered alone, in every kind of file; twice the key-frames' rate, so that every
+/// second frame lies between two of them.
+#[test]
+fn a_frame_is_what_it_is_alone() {
+    let folder = moving(3, &[]);
+    let at = folder.path();
+    let run =
+        animate(at, "--fps 48 --json --aov Z -o f.%02d.png -o f.##.exr -o m.apng -o m.gif -o m.y4m --chroma 444 --validate").expect(0);
+    let (frames, last) = lines(&run);
+    assert_eq!(numbers(&frames), [0, 1, 2, 3, 4]);
+    assert_eq!(frames[3]["time"].as_f64(), Some(3.0 / 48.0));
+    assert_eq!(frames[1]["outputs"], serde_json::json!(["f.01.png", "f.01.exr"]));
+    assert_eq!(last["outputs"], serde_json::json!(["f.%02d.png", "f.##.exr", "m.apng", "m.gif", "m.y4m"]));
+    assert_eq!((last["interrupted"].as_bool(), last["error"].is_null(), last["skipped"].as_u64()), (Some(false), true, Some(0)));
+    for frame in [0, 3] {
+        let line = format!("render move.%d.obj --size 20x15 --eye 0.4,0.5,4 --fps 48 --frame {frame} --aov Z -o a.png -o a.exr -q");
+        gridwalk(at, words(&line)).expect(0);
+        for extension in ["png", "exr"] {
+            let name = format!("f.{frame:02}.{extension}");
+            let [a, b] = [name.as_str(), &format!("a.{extension}")].map(|name| fs::read(at.join(name)).unwrap());
+            // The name of the scene is in the file, and is as long.
+            let [a, b] = [a, b].map(|bytes| String::from_utf8_lossy(&bytes).replace("move.%d.obj", "move.#.obj"));
+            assert!(a == b || without_text(at, &name) == without_text(at, &format!("a.{extension}")), "frame {frame}, {extension}");
+        }
+    }
+    gridwalk(at, words("render move.%d.obj --size 20x15 --eye 0.4,0.5,4 --time 0.0625 -o t.png -q")).expect(0);
+    assert_eq!(pixels(at, "t.png"), pixels(at, "f.03.png"), "a time as good as a number");
+
+    let stills: Vec<Vec<u8>> = (0..5).map(|frame| pixels(at, &format!("f.{frame:02}.png"))).collect();
+    for pair in stills.windows(2) {
+        assert!(pair[0] != pair[1], "the frames are not all one");
+    }
+    let movie = decode_apng(&fs::read(at.join("m.apng")).unwrap());
+    assert_eq!(movie.len(), 5);
+    for (index, ((shown, ms), still)) in movie.iter().zip(&stills).enumerate() {
+        let shown: Vec<u8> = shown.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
+        assert_eq!(shown, *still, "frame {index} of the animated PNG");
+        assert!((ms - 1000.0 / 48.0).abs() < 0.01, "{ms}");
+    }
+    let movie = decode_gif(&fs::read(at.join("m.gif")).unwrap());
+    assert_eq!((movie.len(), movie.iter().map(|frame| frame.1).sum::<u16>()), (5, 10), "five frames take 10.4 hundredths of a second");
+    for (index, ((shown, _), still)) in movie.iter().zip(&stills).enumerate() {
+        let error = shown.iter().zip(still).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum::<f64>() / still.len() as f64;
+        assert!(error.sqrt() < 8.0, "frame {index} of the GIF: {}", error.sqrt());
+    }
+    let movie = fs::read(at.join("m.y4m")).unwrap();
+    let header = b"YUV4MPEG2 W20 H15 F48:1 Ip A1:1 C444 XCOLORRANGE=LIMITED XCOLORMATRIX=BT601\n";
+    assert!(movie.starts_with(header) && movie.len() == header.len() + 5 * (6 + 900), "{} bytes", movie.len());
+    let plane_error = |frame: usize, still: &[u8]| {
+        let planes = &movie[header.len() + frame * 906 + 6..][..900];
+        let wanted =
+            still.chunks_exact(3).map(|pixel| yuv([pixel[0], pixel[1], pixel[2]].map(f64::from), gridwalk_render::image::Matrix::Bt601));
+        wanted
+            .enumerate()
+            .flat_map(|(at, yuv)| (0..3).map(move |plane| (yuv[plane] - f64::from(planes[plane * 300 + at])).abs()))
+            .fold(0.0, f64::max)
+    };
+    for (frame, still) in stills.iter().enumerate() {
+        assert!(plane_error(frame, still) < 0.501, "frame {frame}");
+    }
+    assert!(plane_error(0, &stills[4]) > 5.0, "the comparison tells frames apart");
+}
+
+/// The decoded pixels of a file, all layers.
+fn without_text(folder: &Path, name: &str) -> Vec<(String, gridwalk_render::LayerData)> {
+    let layers = gridwalk_render::image::read(&folder.join(name), gridwalk_render::image::ReadLimits::default()).unwrap();
+    layers.iter().map(|layer| (layer.name.clone(), layer.data.clone())).collect()
+}
+
+#[test]
+fn ranges_steps_and_patterns() {
+    let folder = moving(8, &[]);
+    let at = folder.path();
+    for (options, files) in [
+        ("--frames 1..5:2 -o {frame:03}.png", &["001.png", "003.png", "005.png"][..]),
+        ("--frames 6.. -o x_%d.png", &["x_6.png", "x_7.png"]),
+        ("--frames 4 -o one.png", &["one.png"]),
+        ("--duration 0.1 -o #.png", &["0.png", "1.png"]),
+        ("--fps 6 --format png -o %d.data", &["0.data", "1.data"]),
+        ("--frames 2..3", &["move.apng"]),
+        ("--frames 2..3 --format apng -o two.png", &["two.png"]),
+        ("--frames 3..3 --format png", &["move.0003.png"]),
+    ] {
+        let run = animate(at, options).expect(0);
+        assert!(run.stdout.is_empty());
+        assert_eq!(results(at), files, "{options}");
+        for name in files {
+            fs::remove_file(at.join(name)).unwrap();
+        }
+    }
+    // A movie of every second frame lasts as long.
+    animate(at, "--frames 0..6:2 -o m.gif").expect(0);
+    let movie = decode_gif(&fs::read(at.join("m.gif")).unwrap());
+    assert_eq!((movie.len(), movie.iter().map(|frame| frame.1).sum::<u16>()), (4, 33));
+}
+
+#[test]
+fn what_is_there_is_skipped_or_kept() {
+    let folder = moving(4, &[]);
+    let at = folder.path();
+    fs::write(at.join("f1.png"), "theirs").unwrap();
+    animate(at, "-o f#.png --overwrite never").fails(7, &["f1.png exists"]);
+    assert_eq!(results(at), ["f1.png"]);
+    let (frames, last) = lines(&animate(at, "-o f#.png --skip-existing --json").expect(0));
+    assert_eq!((numbers(&frames), last["skipped"].as_u64()), (vec![0, 2, 3], Some(1)));
+    assert_eq!(fs::read(at.join("f1.png")).unwrap(), b"theirs");
+    let (frames, last) = lines(&animate(at, "-o f#.png --skip-existing --overwrite never --json").expect(0));
+    assert_eq!((frames.len(), last["skipped"].as_u64()), (0, Some(4)));
+    // The movie wants every frame; the pictures that are there stay.
+    let (frames, _) = lines(&animate(at, "-o f#.png -o m.apng --skip-existing --json").expect(0));
+    assert_eq!(numbers(&frames), [0, 1, 2, 3]);
+    assert!(frames.iter().all(|frame| frame["outputs"] == serde_json::json!([])));
+    assert_eq!(decode_apng(&fs::read(at.join("m.apng")).unwrap()).len(), 4);
+    animate(at, "-o f#.png").expect(0);
+    assert_ne!(fs::read(at.join("f1.png")).unwrap(), b"theirs");
+}
+
+#[test]
+fn a_turntable_turns_once() {
+    let folder = moving(0, &[]);
+    let at = folder.path();
+    gridwalk(at, words("animate two.obj --size 20x15")).fails(2, &["does not move", "--turntable"]);
+    gridwalk(at, words("animate two.obj --size 20x15 --turntable 1 --fps 4 --frames 0..4 -o f#.png")).expect(0);
+    let frames: Vec<Vec<u8>> = (0..5).map(|frame| pixels(at, &format!("f{frame}.png"))).collect();
+    assert_eq!(frames[0], frames[4], "after a whole turn all is as before");
+    assert!(frames[..4].iter().enumerate().all(|(index, frame)| !frames[..index].contains(frame)), "no two sides look alike");
+    let (frames, last) = lines(&gridwalk(at, words("animate two.obj --size 20x15 --turntable 0.5 --fps 4 --json")).expect(0));
+    assert_eq!((numbers(&frames), last["outputs"].clone()), (vec![0, 1], serde_json::json!(["two.apng"])));
+    assert!(frames[1..].iter().all(|frame| frame["rebuilt"] == false), "a camera that moves changes no grid");
+    // Named cameras turn too.
+    let run = gridwalk(at, words("animate two.obj --size 20x15 --eye 0.4,0.5,4 --turntable 1 --fps 2 -o t#.png"));
+    run.expect(0);
+    gridwalk(at, words("render two.obj --size 20x15 --eye 0.4,0.5,4 -o r.png")).expect(0);
+    assert_eq!(pixels(at, "t0.png"), pixels(at, "r.png"), "a turn begins where the camera stands");
+    assert_ne!(pixels(at, "t1.png"), pixels(at, "r.png"));
+}
+
+#[test]
+fn standard_output_is_a_movie() {
+    let folder = moving(3, &[]);
+    let at = folder.path();
+    let run = animate(at, "-o -").expect(0);
+    assert!(run.stdout.starts_with(b"YUV4MPEG2 W20 H15 F24:1 Ip A1:1 C420jpeg "));
+    let header = run.stdout.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    assert_eq!(run.stdout.len() - header, 3 * (6 + 300 + 2 * 80), "odd sides are rounded up");
+    let run = animate(at, "-o - --format apng --frames 0..1 --stats -v").expect(0);
+    assert_eq!(decode_apng(&run.stdout).len(), 2);
+    for word in ["disk", "parse", "upload", "hidden", "rebuild", "trace", "shade", "read-back", "encode", "all (ms)", "frames a second"] {
+        assert!(run.stderr.contains(word), "no \"{word}\" in\n{}", run.stderr);
+    }
+    assert_eq!(results(at), [""; 0]);
+}
+
+/// All frames before it are written, movies end with them, and the file is named.
+#[test]
+fn a_key_frame_that_is_missing_or_broken() {
+    let folder = moving(5, &[3]);
+    let at = folder.path();
+    let run = animate(at, "-o f#.png -o m.apng --json").expect(3);
+    for word in ["frame 3", "move.3.obj"] {
+        assert!(run.stderr.contains(word), "no \"{word}\" in {}", run.stderr);
+    }
+    let (frames, last) = lines(&run);
+    assert_eq!(numbers(&frames), [0, 1, 2]);
+    assert!(last["error"].as_str().unwrap().contains("move.3.obj"));
+    assert_eq!(results(at), ["f0.png", "f1.png", "f2.png", "m.apng"]);
+    assert_eq!(decode_apng(&fs::read(at.join("m.apng")).unwrap()).len(), 3);
+    fs::write(at.join("move.3.obj"), "v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n").unwrap();
+    animate(at, "-o g#.png").fails(3, &["frame 3", "move.3.obj:3"]);
+    assert_eq!(results(at), ["f0.png", "f1.png", "f2.png", "g0.png", "g1.png", "g2.png", "m.apng"]);
+    // Frames that do not need it are none the worse.
+    animate(at, "-o h#.png --frames 4").expect(0);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_after_the_frame() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    let folder = moving(0, &[]);
+    let at = folder.path();
+    let line = "animate two.obj --size 200x150 --turntable 10000 --fps 50 --json -o f#.png -o m.gif -o m.apng";
+    let mut child = prepared(at, words(line)).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut reader = BufReader::new(child.stdout.take().unwrap());
+    let mut text = String::new();
+    reader.read_line(&mut text).unwrap();
+    // From here on it has 499,999 frames to go.
+    let kill = std::process::Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    for line in reader.lines() {
+        text.push_str(&line.unwrap());
+        text.push('\n');
+    }
+    let mut output = child.wait_with_output().unwrap();
+    output.stdout = text.into_bytes();
+    let run = Run::new(line.to_owned(), output).expect(130);
+    let (frames, last) = lines(&run);
+    assert!(run.stderr.contains("interrupted") && last["interrupted"] == true, "{}", run.stderr);
+    let count = frames.len();
+    assert_eq!(numbers(&frames), (0..count as u64).collect::<Vec<_>>());
+    let mut expected: Vec<String> = (0..count).map(|frame| format!("f{frame}.png")).chain(["m.apng".into(), "m.gif".into()]).collect();
+    expected.sort();
+    assert_eq!(results(at), expected, "every frame that was told of, and no half file");
+    assert_eq!(decode_gif(&fs::read(at.join("m.gif")).unwrap()).len(), count);
+    let movie = decode_apng(&fs::read(at.join("m.apng")).unwrap());
+    assert_eq!(movie.len(), count);
+    let (_, _, _, still) = decode_png(&fs::read(at.join(format!("f{}.png", count - 1))).unwrap());
+    assert!(movie[count - 1].0.chunks_exact(4).flat_map(|pixel| &pixel[..3]).eq(&still));
+}
+
+/// A program that notes its arguments and keeps what it gets in the file that it is told to write.
+#[cfg(unix)]
+fn fake_ffmpeg(folder: &Path, script: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    fs::create_dir_all(folder.join("bin")).unwrap();
+    let path = folder.join("bin/ffmpeg");
+    // A file that is open for writing cannot be run; whoever is forked meanwhile holds it open.
+    fs::write(folder.join("bin/new"), format!("#!/bin/sh\n[ \"$1\" = -version ] && exit 0\n{script}\n")).unwrap();
+    fs::set_permissions(folder.join("bin/new"), fs::Permissions::from_mode(0o755)).unwrap();
+    std::process::Command::new("cp").arg("-p").arg(folder.join("bin/new")).arg(&path).status().unwrap();
+}
+
+#[cfg(unix)]
+fn with_path(folder: &Path, options: &str, path: &str) -> Run {
+    let line = format!("{SMALL} --frames 0..2 {options}");
+    let output = prepared(folder, words(&line)).env("PATH", path).output().unwrap();
+    Run::new(line, output)
+}
+
+#[cfg(unix)]
+#[test]
+fn video_goes_through_ffmpeg() {
+    let folder = moving(3, &[]);
+    let at = folder.path();
+    let path = format!("{}:/usr/bin:/bin", at.join("bin").display());
+    fake_ffmpeg(at, &format!("echo \"$@\" > {0}/arguments\nfor last; do :; done\ncat > \"$last\"", at.join("bin").display()));
+    for (name, containers) in [("a.mp4", "-f mp4"), ("a.mkv", "-f matroska"), ("a.webm", "-f webm")] {
+        with_path(at, &format!("--size 20x16 -o {name}"), &path).expect(0);
+        let bytes = fs::read(at.join(name)).unwrap();
+        assert!(bytes.starts_with(b"YUV4MPEG2 W20 H16 F24:1 Ip A1:1 C420jpeg XCOLORRANGE=LIMITED XCOLORMATRIX=BT709\n"));
+        assert_eq!(bytes.windows(6).filter(|bytes| bytes == b"FRAME\n").count(), 3);
+        let arguments = fs::read_to_string(at.join("bin/arguments")).unwrap();
+        for part in ["-f yuv4mpegpipe -i -", "-colorspace bt709", "-pix_fmt yuv420p", containers] {
+            assert!(arguments.contains(part), "no {part} in {arguments}");
+        }
+        fs::remove_file(at.join(name)).unwrap();
+    }
+    with_path(at, "-o a.mp4", &path).fails(2, &["a.mp4", "--size 20x16", "--chroma 444"]);
+    with_path(at, "-o a.mp4 --chroma 444", &path).expect(0);
+    fs::remove_file(at.join("a.mp4")).unwrap();
+
+    for script in ["echo Unknown encoder >&2; exit 1", "cat > /dev/null; echo Unknown encoder >&2; exit 8"] {
+        fake_ffmpeg(at, script);
+        with_path(at, "--size 20x16 -o a.mp4", &path).fails(7, &["a.mp4", "ffmpeg", "Unknown encoder"]);
+    }
+    with_path(at, "-o a.gif -o a.mkv --size 20x16", &at.join("nothing").display().to_string())
+        .fails(7, &["a.mkv", "not installed", ".apng"]);
+    assert_eq!(results(at), ["bin"], "what failed leaves nothing");
+}
+
+#[test]
+fn wrong_usage_is_status_2() {
+    let folder = moving(3, &[]);
+    let at = folder.path();
+    for (options, said) in [
+        ("-o a.png", &["a.%04d.png", "--format apng"][..]),
+        ("-o a.exr", &["a.%04d.exr"]),
+        ("-o a.jpg", &["a.jpg", ".apng", "--format"]),
+        ("-o a%d#.png", &["two places"]),
+        ("-o a%d.gif", &["one file"]),
+        ("-o a.gif -o a.gif", &["twice"]),
+        ("-o - --json", &["standard output"]),
+        ("-o - --format png", &["y4m"]),
+        ("-o - --format mp4", &["y4m"]),
+        ("-o a.gif --fps 60", &["50 frames a second", ".apng"]),
+        ("-o a.gif --transparent", &["alpha", ".apng"]),
+        ("-o a.mp4 --transparent", &["alpha"]),
+        ("-o a.apng --aov Z", &["EXR"]),
+        ("-o a#.exr --heatmap steps", &["PNG"]),
+        ("--frames 5..2", &["2..5"]),
+        ("--frames x", &["0..99"]),
+        ("--frames 99..", &["the last frame is 2"]),
+        ("--frames 0..5 --duration 2", &["--duration"]),
+        ("--fps 0", &["24000/1001"]),
+        ("--turntable 0", &["above 0"]),
+    ] {
+        animate(at, options).fails(2, said);
+    }
+    gridwalk(at, words("animate move.#.obj --camera x")).fails(2, &["no camera"]);
+    gridwalk(at, words("render two.obj -o a.gif")).fails(2, &["gridwalk animate"]);
+    gridwalk(at, words("render two.obj --time 1 --frame 2")).fails(2, &["--frame"]);
+    animate(at, "-o none/f%d.png").fails(7, &["none/f0.png", "make the folder first"]);
+    animate(at, "-o none/a.gif").fails(7, &["none/a.gif", "make the folder first"]);
+    animate(at, "--clip walk").fails(3, &["walk"]);
+    assert_eq!(results(at), [""; 0]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_it() {
+    let folder = moving(3, &[]);
+    let at = folder.path();
+    for name in ["full.y4m", "full.apng", "full0.png"] {
+        std::os::unix::fs::symlink("/dev/full", at.join(name)).unwrap();
+    }
+    for output in ["full.y4m", "full.apng", "full%d.png"] {
+        animate(at, &format!("-o {output}")).fails(7, &["full", "make room"]);
+    }
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let line = format!("{SMALL} -o -");
+    let output = prepared(at, words(&line)).stdout(full).output().unwrap();
+    Run::new(line, output).fails(7, &["standard output"]);
+    assert_eq!(results(at), ["full.apng", "full.y4m", "full0.png"]);
+}
+
+#[test]
+fn information_tells_what_moves() {
+    let folder = moving(3, &[]);
+    let at = folder.path();
+    let info = gridwalk(at, words("info move.#.obj --json")).expect(0).json();
+    assert_eq!((info["animation"]["frames"].as_u64(), info["animation"]["fps"].as_f64()), (Some(3), Some(24.0)));
+    assert_eq!((info["meshes"][0]["motion"].as_str(), info["meshes"][0]["key_frames"].as_u64()), (Some("key-frames"), Some(3)));
+    let text = gridwalk(at, words("info move.#.obj")).expect(0).text();
+    assert!(text.contains("3 frames at 24 a second") && text.contains("moves by 3 key-frames"), "{text}");
+    let still = gridwalk(at, words("info two.obj --json")).expect(0).json();
+    assert_eq!((still["animation"].is_null(), still["meshes"][0]["motion"].as_str()), (true, Some("still")));
+    assert_eq!(gridwalk(at, words("list clips move.#.obj")).expect(0).text(), "");
+    assert_eq!(gridwalk(at, words("animate move.#.obj --list-clips")).expect(0).text(), "");
+}

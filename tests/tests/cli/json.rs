@@ -78,6 +78,22 @@ fn render() {
 }
 
 #[test]
+fn animate() {
+    let folder = folder();
+    let line = "animate two.obj --size 16x12 --turntable 0.5 --fps 4 --json -o f#.png";
+    for (options, absent) in [("", &["heatmap"][..]), (" --heatmap steps", &[])] {
+        let text = gridwalk(folder.path(), words(&format!("{line}{options}"))).expect(0).text();
+        let lines: Vec<serde_json::Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines.len(), 3);
+        for line in &lines[..2] {
+            check("`gridwalk animate`, a frame", line, absent);
+        }
+        check("`gridwalk animate`, in the end", &lines[2], &[]);
+        assert_eq!((lines[2]["size"].clone(), lines[2]["fps"].as_f64()), (serde_json::json!([16, 12]), Some(4.0)));
+    }
+}
+
+#[test]
 fn cast() {
     let folder = folder();
     std::fs::write(folder.path().join("r.npy"), super::cast::npy(&[[0.1, 0.1, 1.0, 0.0, 0.0, -1.0]])).unwrap();

@@ -4,7 +4,7 @@ mod diff;
 mod exr;
 mod file;
 mod heatmap;
-mod movie;
+pub mod movie;
 mod png;
 mod tonemap;
 

@@ -178,7 +178,7 @@ fn a_gif_of_many_colours_is_near() {
     };
     for (index, ((pixels, _), frame)) in decoded.iter().zip(frames.iter().chain([&cut])).enumerate() {
         let error = error(pixels, &frame.data);
-        assert!(error < 5.0, "frame {index}: root mean square error {error} of 255");
+        assert!(error < 8.0, "frame {index}: root mean square error {error} of 255");
     }
     assert!(error(&decoded[0].0, &cut.data) > 50.0, "the comparison tells frames apart");
 }
@@ -270,6 +270,7 @@ fn movies_appear_whole_or_not_at_all() {
     let desc = MovieDesc { format: MovieFormat::Gif, rate: rate("60"), chroma: Chroma::C420, metadata: Metadata::new() };
     let mut movie = MovieWriter::create(&folder.path().join("a.gif"), Overwrite::Replace, &desc).unwrap();
     assert!(matches!(movie.push(&frames(3, 1)[0]), Err(Error::Movie { .. })), "no player shows 60 frames of a GIF a second");
+    drop(movie);
     let alpha = MovieDesc { rate: rate("10"), ..desc };
     let mut movie = MovieWriter::create(&folder.path().join("a.gif"), Overwrite::Replace, &alpha).unwrap();
     assert!(matches!(movie.push(&frames(4, 1)[0]), Err(Error::Movie { .. })));
