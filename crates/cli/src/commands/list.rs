@@ -70,7 +70,10 @@ pub fn tonemaps() -> Result<Exit> {
 
 pub fn formats() -> Result<Exit> {
     let read = [
-        ("obj", "read: Wavefront OBJ, with its MTL; textures PNG, JPEG, TGA"),
+        ("obj", "read: Wavefront OBJ, with its MTL; textures PNG, JPEG, TGA; also .obj.gz, and sequences %04d or ####"),
+        ("ply", "read: PLY, ASCII or binary; also .ply.gz, and sequences"),
+        ("gltf", "read: glTF 2.0, with what moves in it"),
+        ("glb", "read: the same in one file"),
         ("toml", "read: a scene of gridwalk: meshes, cameras, lights, background"),
         ("npy", "read by cast: rays, float32"),
         ("npz", "written by cast: hits"),
