@@ -10,4 +10,6 @@ mod error;
 pub mod functions;
 mod input;
 mod load;
+#[cfg(test)]
+mod recording;
 pub mod types;
