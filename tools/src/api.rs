@@ -99,6 +99,6 @@ mod tests {
             "gridwalk_core::twin::any_hit::any_hit"
         );
         assert_eq!(item("impl<'a> gridwalk::DeviceDesc<'a>"), "gridwalk::DeviceDesc");
-        assert_eq!(item("pub unsafe fn f(ash::vk::Buffer)"), "");
+        assert_eq!(item("pub fn f(ash::vk::Buffer)"), "");
     }
 }
