@@ -4,6 +4,7 @@
 mod animation;
 mod capi;
 mod cli;
+mod contract;
 mod examples;
 mod image;
 mod kernels;
