@@ -3,7 +3,7 @@
 //! Times are in seconds from the beginning of the animation. The same time gives the same answer whatever was asked before, so a frame
 //! rendered alone equals the frame of a run.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::curve::Curve;
 use crate::gltf::Rig;
@@ -12,7 +12,7 @@ use crate::moving::{CameraCurve, LightCurve, PlacedCurve, Turntable};
 use crate::sequence::Sequence;
 use crate::transform::Edit;
 use crate::vector::normalised;
-use crate::{Camera, Light, Material, Mesh, Result, Scene, Texture};
+use crate::{Bounds, Camera, Framing, Light, Material, Mesh, Result, Scene, Texture};
 
 /// What of an animation is wanted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -51,6 +51,8 @@ pub struct Animation {
     pub(crate) tracks: Tracks,
     /// As it was when the scene was read; `None` where nothing has key-frames.
     pub(crate) keys: Option<KeyReader>,
+    /// Of the scene, once it was asked for.
+    bounds: OnceLock<Option<Bounds>>,
 }
 
 /// How everything moves: an entry for each mesh, camera and light of the scene, in its order; what has none stands still.
@@ -288,6 +290,7 @@ impl Animation {
             cyclic: false,
             tracks: Tracks::default(),
             keys: None,
+            bounds: OnceLock::new(),
         }
     }
 
@@ -349,8 +352,16 @@ impl Animation {
             Some(CameraTrack::Rig(track)) => track.rig.camera(track.number, time),
             Some(CameraTrack::Keys(curve)) => Some(curve.at(time)),
             Some(CameraTrack::Turntable(turntable)) => self.scene.camera(name).map(|camera| turntable.at(&camera, time)),
-            Some(CameraTrack::Still) | None => self.scene.camera(name),
+            Some(CameraTrack::Still) => self.scene.camera(name),
+            None if name.is_none() && number.is_none() => Some(self.frame(&Framing { up: self.scene.up, ..Framing::default() })),
+            None => self.scene.camera(name),
         }
+    }
+
+    /// As [`Scene::frame`], for every frame: the box of the scene at time 0 is computed when it is first asked for, and kept.
+    pub fn frame(&self, framing: &Framing) -> Camera {
+        let bounds = self.bounds.get_or_init(|| self.scene.bounds());
+        crate::frame_camera(&bounds.unwrap_or(Bounds::UNIT), framing)
     }
 
     /// The lights at a time: always as many as [`Scene::lights`], each of the same kind.

@@ -967,11 +967,8 @@ impl Builder<'_> {
             (Some(file), None, None) => {
                 self.refuse_shape_keys(&entry, at)?;
                 let path = self.find(file)?;
-                if matches!(ending(&path).as_deref(), Some("gltf" | "glb" | "toml")) {
-                    return Err(source.error_in(
-                        file.span(),
-                        format!("{} is a scene of its own; open it by itself, or export the mesh as OBJ or PLY", file.get_ref()),
-                    ));
+                if ending(&path).as_deref() == Some("toml") {
+                    return Err(source.error_in(file.span(), format!("{} is a scene file; name its meshes here instead", file.get_ref())));
                 }
                 let timed = mesh_file::read(&mut self.assets, &path, file.get_ref()).map_err(|error| self.in_place(file.span(), error))?;
                 timed.mesh

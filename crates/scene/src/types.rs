@@ -272,6 +272,9 @@ impl Mesh {
 }
 
 impl Bounds {
+    /// What stands for a scene without triangles.
+    pub(crate) const UNIT: Self = Self { min: [-0.5; 3], max: [0.5; 3] };
+
     fn with(self, point: [f32; 3]) -> Self {
         Self {
             min: std::array::from_fn(|axis| self.min[axis].min(point[axis])),
@@ -317,6 +320,6 @@ impl Scene {
 
     /// A camera that frames the whole scene; a scene without triangles is framed as a unit cube.
     pub fn frame(&self, framing: &crate::Framing) -> Camera {
-        crate::frame_camera(&self.bounds().unwrap_or(Bounds { min: [-0.5; 3], max: [0.5; 3] }), framing)
+        crate::frame_camera(&self.bounds().unwrap_or(Bounds::UNIT), framing)
     }
 }

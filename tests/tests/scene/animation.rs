@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gridwalk_scene::{Animation, AnimationOptions, Error, KeyPair, LoadOptions, Motion, open};
+use gridwalk_scene::{Animation, AnimationOptions, Error, Framing, KeyPair, LoadOptions, Motion, open};
 
 use super::{folder, png, without_folder};
 
@@ -321,6 +321,18 @@ fn a_herd_parses_each_file_once_and_its_reader_goes_to_another_thread() {
     });
     // All four were read for the scene at time 0.
     assert_eq!(parsed.join().unwrap(), (0, vec![[11.0, 0.0, 0.0], [15.0, 0.0, 0.0], [11.0, 1.0, 0.0]]));
+}
+
+#[test]
+fn the_automatic_camera_does_not_depend_on_the_frame() {
+    let folder = herd("[[mesh]]\nsequence = \"keys/k#.obj\"\nfps = 1\n");
+    let moving = animation(folder.path());
+    let framing = Framing { azimuth: 70.0, ..Framing::default() };
+    assert_eq!(moving.frame(&framing), moving.scene.frame(&framing));
+    assert_eq!([moving.camera(None, 0.0), moving.camera(None, 3.0)], [moving.scene.camera(None); 2]);
+    // Negative control: the last key-frame alone is framed from elsewhere.
+    let last = folder.path().join("keys/k3.obj");
+    assert_ne!(animation(&last).camera(None, 0.0), moving.camera(None, 3.0));
 }
 
 #[test]

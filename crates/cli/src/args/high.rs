@@ -577,7 +577,7 @@ pub fn camera(view: &low::View, animation: &Animation, time: f64, size: [u32; 2]
         vertical_fov_degrees: view.fov.unwrap_or(Framing::default().vertical_fov_degrees),
         aspect: size[0] as f32 / size[1] as f32,
     };
-    let framed = || if turn.is_some() { framed_all_round(scene, &framing) } else { scene.frame(&framing) };
+    let framed = || if turn.is_some() { framed_all_round(animation, &framing) } else { animation.frame(&framing) };
     let own = |name| {
         let mut camera = animation.camera(name, time).unwrap_or_else(framed);
         camera.vertical_fov_degrees = view.fov.unwrap_or(camera.vertical_fov_degrees);
@@ -618,13 +618,13 @@ pub fn camera(view: &low::View, animation: &Animation, time: f64, size: [u32; 2]
 }
 
 /// The automatic view from as far away as shows everything from every side.
-fn framed_all_round(scene: &Scene, framing: &Framing) -> Camera {
+fn framed_all_round(animation: &Animation, framing: &Framing) -> Camera {
     const SIDES: u16 = 48;
-    let mut camera = scene.frame(framing);
+    let mut camera = animation.frame(framing);
     let offset = |camera: &Camera| -> [f64; 3] { std::array::from_fn(|i| f64::from(camera.eye[i]) - f64::from(camera.target[i])) };
     let distance = |camera: &Camera| offset(camera).iter().map(|value| value * value).sum::<f64>().sqrt();
     let sides = (0..SIDES).map(|side| framing.azimuth + f32::from(side) * 360.0 / f32::from(SIDES));
-    let farthest = sides.map(|azimuth| distance(&scene.frame(&Framing { azimuth, ..*framing }))).fold(0.0, f64::max);
+    let farthest = sides.map(|azimuth| distance(&animation.frame(&Framing { azimuth, ..*framing }))).fold(0.0, f64::max);
     let (offset, factor) = (offset(&camera), farthest / distance(&camera));
     if factor > 1.0 && factor.is_finite() {
         camera.eye = std::array::from_fn(|i| (f64::from(camera.target[i]) + offset[i] * factor) as f32);
