@@ -342,14 +342,13 @@ pub struct Placed<'a> {
 impl<'a> Placed<'a> {
     pub fn new(memory: &'a Memory<'a>, tracer: &Tracer, terrain: Terrain) -> Placed<'a> {
         let (triangles, rays) = (terrain.indices.len() as u32, terrain.rays.len() as u32);
-        let capacity = Capacity { triangles, cells: 16 * triangles, pairs: 128 * triangles, ..Capacity::default() };
+        let capacity = Capacity { triangles, cells: 16 * triangles, pairs: 128 * triangles };
         let sizes = tracer.build_sizes(&capacity).unwrap();
         let geometry = Geometry {
             positions: memory.upload(&terrain.positions),
             vertex_count: terrain.positions.len() as u32,
             indices: memory.upload(&terrain.indices),
             triangle_count: triangles,
-            ..Geometry::default()
         };
         let room = |size: gridwalk::RegionSize| memory.region(size.size);
         let build = BuildInfo::new(geometry, room(sizes.grid), room(sizes.scratch), room(sizes.report), capacity);

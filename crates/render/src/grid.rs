@@ -120,6 +120,14 @@ impl GridBuilder {
         Ok(GridBuilder { engine: Arc::new(Engine { tracer: Some(tracer), context: context.clone() }) })
     }
 
+    /// The library's recorder, for builds and traces of the caller's own.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`] while the device is being given up.
+    pub fn tracer(&self) -> Result<&Tracer> {
+        self.engine.tracer()
+    }
+
     /// The context of the builder.
     pub fn context(&self) -> &Context {
         &self.engine.context

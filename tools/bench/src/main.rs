@@ -13,6 +13,8 @@ mod measure;
 mod moving;
 mod plot;
 mod rays;
+#[allow(unsafe_code, reason = "records commands")]
+mod record;
 mod report;
 mod scenes;
 mod surface;
@@ -138,6 +140,7 @@ fn run(arguments: &Arguments) -> Result<Report> {
     let begin = Instant::now();
     let builder = GridBuilder::new(&context)?;
     let pipelines_ms = begin.elapsed().as_secs_f64() * 1e3;
+    let (record_build_us, record_trace_us) = record::measure(&context, builder.tracer()?)?;
     let info = context.device_info();
     let mut report = Report {
         schema: 1,
@@ -146,6 +149,8 @@ fn run(arguments: &Arguments) -> Result<Report> {
         driver: format!("{} {}", info.driver_name, info.driver_info),
         device_is_cpu: context.is_cpu(),
         pipelines_ms,
+        record_build_us,
+        record_trace_us,
         embree: embree.as_ref().map(|embree| rival(embree, &format!("{:?}", arguments.embree_quality).to_lowercase())),
         runs: arguments.runs,
         scenes: Vec::new(),

@@ -19,6 +19,12 @@ pub struct Report {
     pub device_is_cpu: bool,
     /// Milliseconds to make the library's pipelines.
     pub pipelines_ms: f64,
+    /// Median of the microseconds to record a build into a command buffer.
+    #[serde(default)]
+    pub record_build_us: f64,
+    /// Likewise a trace of closest hits.
+    #[serde(default)]
+    pub record_trace_us: f64,
     /// The rival; none where it is not installed.
     pub embree: Option<Rival>,
     /// Runs after the warm-up.
@@ -267,8 +273,12 @@ impl Report {
             None => text += "Embree is not there: its columns are empty; ",
         }
         text += &format!(
-            "medians of {} runs; ratio above 1: faster than Embree, by medians, by the best runs, and by processor time\n\n",
+            "medians of {} runs; ratio above 1: faster than Embree, by medians, by the best runs, and by processor time\n",
             self.runs
+        );
+        text += &format!(
+            "pipelines made in {:.0} ms; recorded in {:.1} us a build, {:.1} us a trace\n\n",
+            self.pipelines_ms, self.record_build_us, self.record_trace_us
         );
 
         let mut rows = vec![head(&["scene", "triangles", "k", "overlap", "resolution", "cells", "in use", "pairs", "of", "longest"])];
