@@ -1,6 +1,6 @@
 //! Scenes from the command line.
 
-use gridwalk_render::gridwalk_scene::{Animation, AnimationOptions, LoadOptions, Scene, load, load_reader};
+use gridwalk_render::gridwalk_scene::{self, Animation, AnimationOptions, LoadOptions, Scene, load, load_reader, open_reader};
 
 use crate::args::high::Source;
 use crate::exit::Result;
@@ -20,8 +20,8 @@ pub fn open(source: &Source, options: &LoadOptions, clip: Option<&str>) -> Resul
     let mut wanted = AnimationOptions::default();
     wanted.clip = clip.map(str::to_owned);
     let animation = match source {
-        Source::Stdin => Animation::still(load_reader(&mut std::io::stdin().lock(), None, options)?),
-        Source::Path(path) => gridwalk_render::gridwalk_scene::open(path, options, &wanted)?,
+        Source::Stdin => open_reader(&mut std::io::stdin().lock(), None, options, &wanted)?,
+        Source::Path(path) => gridwalk_scene::open(path, options, &wanted)?,
     };
     warn(&animation.scene);
     Ok(animation)

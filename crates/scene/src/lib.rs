@@ -1,8 +1,8 @@
 //! Scene files for gridwalk: OBJ with MTL, PLY, glTF, and `scene.toml`, into triangles, materials, textures, lights and cameras, and how
 //! they move.
 //!
-//! [`open`] reads a path with all that moves in it, [`load`] the same at time 0, [`load_reader`] a stream; [`generate`] makes meshes without
-//! files. Files that a scene names are opened only below the scene's own folder unless [`LoadOptions::allow_external_paths`] says
+//! [`open`] reads a path with all that moves in it, [`load`] the same at time 0; [`open_reader`] and [`load_reader`] read a stream;
+//! [`generate`] makes meshes without files. Files that a scene names are opened only below the scene's own folder unless [`LoadOptions::allow_external_paths`] says
 //! otherwise, and only up to the caps of [`LoadOptions`]. No input makes these functions panic.
 //!
 //! | path | what is read |
@@ -201,6 +201,6 @@ pub use animation::{Animation, AnimationOptions, Clip, DEFAULT_FPS, Deformed, In
 pub use error::{Error, Place, Result};
 pub use frame::{Framing, frame_camera};
 pub use key_reader::KeyReader;
-pub use load::{load, load_reader, open, scene_of_mesh};
+pub use load::{load, load_reader, open, open_reader, scene_of_mesh};
 pub use options::LoadOptions;
 pub use types::{Background, Bounds, Camera, Light, Material, Mesh, NamedCamera, RenderDefaults, Scene, TONEMAPS, Texture};

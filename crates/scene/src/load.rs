@@ -55,6 +55,11 @@ pub fn open(path: &Path, options: &LoadOptions, animation: &AnimationOptions) ->
         // A name that does not exist is told with its neighbours rather than by its ending.
         _ => read_file(path, 0).and(Err(Error::UnknownFormat { path: path.to_owned() })),
     }?;
+    with_clip(opened, animation)
+}
+
+/// Refuses a clip that there is not.
+fn with_clip(opened: Animation, animation: &AnimationOptions) -> Result<Animation> {
     match &animation.clip {
         Some(clip) if !opened.clips.iter().any(|known| known.name == *clip) => {
             let known = opened.clips.iter().map(|clip| clip.name.clone()).collect();
@@ -123,11 +128,22 @@ fn open_gltf(bytes: Vec<u8>, path: &Path, folder: Option<&Path>, options: &LoadO
 /// # Errors
 /// As [`load`]; the file in messages is `-`.
 pub fn load_reader(reader: &mut dyn Read, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {
-    let bytes = read_stream(reader, Path::new("-"), options.max_mesh_bytes)?;
-    if bytes.starts_with(b"glTF") {
-        return open_gltf(bytes, Path::new("-"), folder, options, None).map(|animation| animation.scene);
-    }
-    load_mesh(&bytes, Path::new("-"), folder, options)
+    open_reader(reader, folder, options, &AnimationOptions::default()).map(|animation| animation.scene)
+}
+
+/// Reads a stream with all that moves in it, which is that of a GLB. [`load_reader`] gives the same scene at time 0.
+///
+/// # Errors
+/// As [`load_reader`]; a clip of an unknown name.
+pub fn open_reader(reader: &mut dyn Read, folder: Option<&Path>, options: &LoadOptions, animation: &AnimationOptions) -> Result<Animation> {
+    let path = Path::new("-");
+    let bytes = read_stream(reader, path, options.max_mesh_bytes)?;
+    let opened = if bytes.starts_with(b"glTF") {
+        open_gltf(bytes, path, folder, options, animation.clip.as_deref())
+    } else {
+        load_mesh(&bytes, path, folder, options).map(Animation::still)
+    }?;
+    with_clip(opened, animation)
 }
 
 fn load_mesh(bytes: &[u8], path: &Path, folder: Option<&Path>, options: &LoadOptions) -> Result<Scene> {

@@ -14,7 +14,7 @@ use crate::suggest;
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// OBJ text on standard input.
+    /// A mesh on standard input.
     Stdin,
     /// A file or folder.
     Path(PathBuf),

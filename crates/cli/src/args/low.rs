@@ -218,7 +218,7 @@ pub struct Moment {
 
 #[derive(Args, Debug)]
 pub struct Render {
-    /// An .obj, .ply, .gltf or .glb file, a scene.toml, a folder that holds one, or - for OBJ from standard input
+    /// An .obj, .ply, .gltf or .glb file, a scene.toml, a folder that holds one, or - for OBJ, PLY or GLB from standard input
     #[arg(value_hint = ValueHint::AnyPath, required_unless_present_any = ["list_aovs", "list_tonemaps", "list_formats"])]
     pub scene: Option<PathBuf>,
 
@@ -407,7 +407,7 @@ pub struct View {
 
 #[derive(Args, Debug)]
 pub struct Info {
-    /// An .obj, .ply, .gltf or .glb file, a scene.toml, a folder that holds one, or - for OBJ from standard input
+    /// An .obj, .ply, .gltf or .glb file, a scene.toml, a folder that holds one, or - for OBJ, PLY or GLB from standard input
     #[arg(value_hint = ValueHint::AnyPath)]
     pub scene: PathBuf,
     /// Print one JSON object (docs/json.md)
@@ -428,7 +428,7 @@ pub struct Devices {
 
 #[derive(Args, Debug)]
 pub struct Cast {
-    /// An .obj, .ply, .gltf or .glb file, a scene.toml, a folder that holds one, or - for OBJ from standard input
+    /// An .obj, .ply, .gltf or .glb file, a scene.toml, a folder that holds one, or - for OBJ, PLY or GLB from standard input
     #[arg(value_hint = ValueHint::AnyPath)]
     pub scene: PathBuf,
     /// The rays, as NumPy writes them; - is standard input
