@@ -14,6 +14,10 @@ layout(push_constant, std430) uniform AnyHit {
     OccludedOut occluded;
     TraceStateInOut state;
     WalkStatesInOut walks;
+    // Of the variant with extras.
+    MasksIn masks;
+    uint mask;
+    uint options;
 };
 
 void main() {
@@ -34,6 +38,9 @@ void main() {
         Walk walk = walk_begin(header, moved);
         if (CONTINUE) {
             walk_restore(walk, header, walks.walk[index]);
+        }
+        if (EXTRAS) {
+            TRACE_FILTER(walk, index)
         }
         given_up = !walk_run(walk, header, seen);
         result = walk.best_triangle != GRIDWALK_MISS ? 1u : 0u;

@@ -17,11 +17,13 @@ layout(push_constant, std430) uniform ClosestCandidate {
     RaysIn rays;
     HitsOut hits;
     uint ray_count;
+    uint mask;
+    uint cull;
 };
 
 void main() {
     uint index = invocation_index();
     if (index < ray_count) {
-        hits.hit[index] = gridwalk_closest_hit(grid, rays.ray[index]);
+        hits.hit[index] = gridwalk_closest_hit_filtered(grid, rays.ray[index], mask, cull);
     }
 }

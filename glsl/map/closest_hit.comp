@@ -14,6 +14,11 @@ layout(push_constant, std430) uniform ClosestHit {
     TraceStateInOut state;
     WalkStatesInOut walks;
     CountersInOut counters; // read and written only by the counting variant
+    // Of the variant with extras.
+    MasksIn masks;
+    GeometriesOut geometries;
+    uint mask;
+    uint options;
 };
 
 void main() {
@@ -36,12 +41,16 @@ void main() {
     }
     Counters seen = Counters(0u, 0u, 0u);
     bool given_up = false;
+    bool found = false;
     if (moved.valid) {
         Walk walk = walk_begin(header, moved);
         if (CONTINUE) {
             walk_restore(walk, header, walks.walk[index]);
         } else {
             seen = Counters(1u, 0u, uint(walk.reference < walk.list_end));
+        }
+        if (EXTRAS) {
+            TRACE_FILTER(walk, index)
         }
         given_up = !walk_run(walk, header, seen);
         if (given_up) {
@@ -53,10 +62,16 @@ void main() {
             }
         } else if (walk.best_triangle != GRIDWALK_MISS) {
             hit = Hit(hit_distance(moved, ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
+            found = true;
         }
     }
     if (!given_up || LAST) {
         hits.hit[index] = hit;
+        // A hit that stays has its geometry already.
+        bool changed = !RESUME || found || hit.triangle == GRIDWALK_UNFINISHED;
+        if (EXTRAS && changed && (options & OPTION_GEOMETRIES) != 0u) {
+            geometries.geometry[index] = found ? gridwalk_geometry(grid, hit.triangle) : uvec2(GRIDWALK_MISS);
+        }
         walks.walk[index].given_up = 0u;
     }
     if (COUNT) {

@@ -16,6 +16,9 @@
 //   }
 //   Hit hit = gridwalk_committed(candidates);
 //
+// gridwalk_geometry(grid, hit.triangle) gives the id of a hit's geometry and the triangle's number within it. The functions _filtered take
+// a mask and what is to be culled beside.
+//
 // A walk that needs more than GRIDWALK_TURNS turns (cells and triangles) ends as GRIDWALK_UNFINISHED. Public are the types Ray and Hit,
 // GridwalkGrid as an opaque address, the constants GRIDWALK_* and the functions gridwalk_*; everything else may change.
 #ifndef GRIDWALK_GLSL
@@ -59,6 +62,15 @@ GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
     return candidates;
 }
 
+// Candidates of geometries that share a bit with the mask, without what is culled: GRIDWALK_CULL_BACK, GRIDWALK_CULL_FRONT, or 0. A front is
+// the side around which a triangle's vertices go counterclockwise.
+GridwalkCandidates gridwalk_candidates_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+    candidates.walk.mask = mask;
+    candidates.walk.cull = cull;
+    return candidates;
+}
+
 // One turn: a triangle is tested, or the walk steps. True if there is a candidate.
 bool gridwalk_turn(inout GridwalkCandidates candidates) {
     candidates.unfinished = candidates.turns >= GRIDWALK_TURNS;
@@ -70,7 +82,8 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
         candidates.walk.reference += 1u;
         float u;
         float v;
-        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)) {
+        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)
+            && walk_accepts(candidates.walk, candidates.grid, triangle)) {
             candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
             return true;
         }
@@ -109,8 +122,7 @@ Hit gridwalk_committed(GridwalkCandidates candidates) {
     return Hit(hit_distance(walk.ray, candidates.ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
 }
 
-Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) {
-    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+Hit gridwalk_closest_of(GridwalkCandidates candidates) {
     // One loop, in which all invocations take their turns together: see GRIDWALK_TURNS.
     while (candidates.searching) {
         if (gridwalk_turn(candidates)) {
@@ -120,13 +132,24 @@ Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) {
     return gridwalk_committed(candidates);
 }
 
-// The first hit that is found: its triangle is GRIDWALK_MISS if there is none.
-Hit gridwalk_any_hit(GridwalkGrid grid, Ray ray) {
-    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+Hit gridwalk_any_of(GridwalkCandidates candidates) {
     if (gridwalk_next(candidates)) {
         gridwalk_commit(candidates);
     }
     return gridwalk_committed(candidates);
+}
+
+Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) { return gridwalk_closest_of(gridwalk_candidates(grid, ray)); }
+
+Hit gridwalk_closest_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+    return gridwalk_closest_of(gridwalk_candidates_filtered(grid, ray, mask, cull));
+}
+
+// The first hit that is found: its triangle is GRIDWALK_MISS if there is none.
+Hit gridwalk_any_hit(GridwalkGrid grid, Ray ray) { return gridwalk_any_of(gridwalk_candidates(grid, ray)); }
+
+Hit gridwalk_any_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+    return gridwalk_any_of(gridwalk_candidates_filtered(grid, ray, mask, cull));
 }
 
 #endif

@@ -20,6 +20,17 @@ layout(constant_id = 1) const bool CONTINUE = false; // goes on with walks that 
 layout(constant_id = 2) const bool LAST = false; // a walk that is given up now is reported
 layout(constant_id = 3) const bool RESUME = false; // existing hits are to be beaten
 layout(constant_id = 4) const bool COUNT = false;
+layout(constant_id = 5) const bool EXTRAS = false; // masks, culling, geometry ids: what is not asked for costs nothing
+
+// Bits of the push constant `launch`, where it stands for the first three.
+const uint LAUNCH_CONTINUE = 1u;
+const uint LAUNCH_LAST = 2u;
+const uint LAUNCH_RESUME = 4u;
+
+// Bits of the push constant `options`.
+const uint OPTION_CULL = 3u; // GRIDWALK_CULL_* bits
+const uint OPTION_MASKS = 4u; // each ray has a mask of its own
+const uint OPTION_GEOMETRIES = 8u; // geometry and number within it are written
 
 // A turn walks through empty cells to the next list, then tests triangles of it: so the invocations of a subgroup mostly do the same.
 // lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over all of its loops and over the divergent paths of
@@ -48,6 +59,11 @@ void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
     walk_commit(walk, saved.best_s, saved.best_u, saved.best_v, saved.best_triangle);
 }
 
+// Gives the walk its ray's mask and what is culled.
+#define TRACE_FILTER(walk, index) \
+    walk.cull = options & OPTION_CULL; \
+    walk.mask = (options & OPTION_MASKS) != 0u ? mask & masks.word[index] : mask;
+
 // Walks until the end or for TURNS turns; true at the end.
 bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
     for (uint turn = 0u; turn < TURNS; ++turn) {
@@ -72,7 +88,8 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
                 counters.tests += 1u;
             }
             walk.reference += 1u;
-            if (walk_test(walk, grid, triangle, s, u, v) && TRACE_ACCEPT(triangle, u, v)) {
+            bool met = walk_test(walk, grid, triangle, s, u, v) && (!EXTRAS || walk_accepts(walk, grid, triangle));
+            if (met && TRACE_ACCEPT(triangle, u, v)) {
                 walk_commit(walk, s, u, v, triangle);
 #ifdef TRACE_ANY
                 return true;

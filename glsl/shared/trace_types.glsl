@@ -9,6 +9,10 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Ra
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer HitsInOut { Hit hit[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer HitsOut { Hit hit[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer RayCountIn { uint rays; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer MasksIn { uint word[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) writeonly buffer HitCountsOut { uint count[]; };
+// Geometry id, and number of the triangle within its geometry; GRIDWALK_MISS twice for a ray that hits nothing.
+layout(buffer_reference, std430, buffer_reference_align = 8) writeonly buffer GeometriesOut { uvec2 geometry[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) writeonly buffer OccludedOut { uint occluded[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer CountersInOut { uvec4 counters[]; };
 

@@ -27,7 +27,12 @@ struct Walk {
     float best_u;
     float best_v;
     uint best_triangle; // GRIDWALK_MISS: none so far
+    uint mask; // of the ray
+    uint cull; // GRIDWALK_CULL_* bits
 };
+
+const uint GRIDWALK_CULL_BACK = 1u;
+const uint GRIDWALK_CULL_FRONT = 2u;
 
 const float BEYOND = 3.0e38;
 
@@ -80,6 +85,8 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
     walk.best_u = 0.0;
     walk.best_v = 0.0;
     walk.best_triangle = GRIDWALK_MISS;
+    walk.mask = 0xFFFFFFFFu;
+    walk.cull = 0u;
     walk_enter(walk, grid);
     return walk;
 }
@@ -117,6 +124,40 @@ bool walk_test(Walk walk, GridHeader grid, uint triangle, out float s, out float
     vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
     vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
     return intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && walk_improves(walk, s, triangle);
+}
+
+// The id of a triangle's geometry, and the triangle's number within it.
+uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
+    TriangleWordsIn words = TriangleWordsIn(grid.header.triangles);
+    return uvec2(words.vertex[3u * triangle + 1u].w, words.vertex[3u * triangle].w & TRIANGLE_NUMBER);
+}
+
+// Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
+bool sees_front(MovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
+    vec3 a = permute(ray, v0 - ray.origin);
+    vec3 e1 = permute(ray, v1 - ray.origin) - a;
+    vec3 e2 = permute(ray, v2 - ray.origin) - a;
+    vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+    float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
+    return (facing < 0.0) == (ray.shear.z > 0.0);
+}
+
+// Whether a triangle that the ray's line meets is one that the ray is to hit: by masks and by culling.
+bool walk_accepts(Walk walk, GridHeader grid, uint triangle) {
+    TriangleWordsIn words = TriangleWordsIn(grid.triangles);
+    if (walk.mask != 0xFFFFFFFFu && (words.vertex[3u * triangle + 2u].w & walk.mask) == 0u) {
+        return false;
+    }
+    if (walk.cull == 0u) {
+        return true;
+    }
+    uint flags = words.vertex[3u * triangle].w;
+    Triangles triangles = Triangles(grid.triangles);
+    bool front = sees_front(walk.ray, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
+                            triangles.vertex[3u * triangle + 2u].xyz);
+    front = front != ((flags & TRIANGLE_FLIPPED) != 0u);
+    bool culled = (walk.cull & (front ? GRIDWALK_CULL_FRONT : GRIDWALK_CULL_BACK)) != 0u;
+    return !culled || (flags & TRIANGLE_TWO_SIDED) != 0u;
 }
 
 void walk_commit(inout Walk walk, float s, float u, float v, uint triangle) {

@@ -3,7 +3,7 @@
 
 use crate::grid::{boundary, brick_resolution, cell_id, cell_of};
 use crate::intersect::{Intersection, MovedRay, intersect_triangle};
-use crate::layout::{Brick, GridHeader, WalkState};
+use crate::layout::{Brick, GridHeader, TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED, WalkState};
 use crate::ray::MISS;
 use crate::vector::{Vec3, add, max, max_f32, min, min_f32, mul, sub};
 
@@ -15,6 +15,10 @@ pub const STEPS_EACH_TURN: u32 = 4;
 pub const TESTS_EACH_TURN: u32 = 20;
 /// Turns of a walk through the public include.
 pub const GRIDWALK_TURNS: u32 = 32_768;
+/// [`Walk::cull`]: triangles are not hit of which the ray sees the back.
+pub const CULL_BACK: u32 = 1;
+/// [`Walk::cull`]: triangles are not hit of which the ray sees the front.
+pub const CULL_FRONT: u32 = 2;
 /// Added to the distance of a boundary that the ray does not move towards.
 pub const BEYOND: f32 = 3.0e38;
 
@@ -98,6 +102,24 @@ pub struct Walk {
     pub best_v: f32,
     /// Of the best hit; [`MISS`]: none so far.
     pub best_triangle: u32,
+    /// What the ray may hit.
+    pub filter: Filter,
+}
+
+/// What a ray may hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Filter {
+    /// Mask of the ray: with all bits it hits every geometry.
+    pub mask: u32,
+    /// [`CULL_BACK`], [`CULL_FRONT`].
+    pub cull: u32,
+}
+
+impl Default for Filter {
+    /// Everything.
+    fn default() -> Filter {
+        Filter { mask: u32::MAX, cull: 0 }
+    }
 }
 
 /// Looks at the cell: its list, the block around it, and where the ray leaves that.
@@ -152,6 +174,7 @@ pub fn walk_nowhere(ray: MovedRay) -> Walk {
         best_u: 0.0,
         best_v: 0.0,
         best_triangle: MISS,
+        filter: Filter::default(),
     }
 }
 
@@ -212,6 +235,30 @@ pub fn walk_test(walk: &Walk, grid: &Grid, triangle: u32) -> Option<Intersection
     walk_improves(walk, hit.s, triangle).then_some(hit)
 }
 
+/// Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
+pub fn sees_front(ray: &MovedRay, vertices: [Vec3; 3]) -> bool {
+    let [a, b, c] = vertices.map(|vertex| ray.permute(sub(vertex, ray.origin)));
+    let (e1, e2) = (sub(b, a), sub(c, a));
+    let normal = [e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]];
+    let facing = normal[0] * ray.shear[0] + normal[1] * ray.shear[1] + normal[2];
+    (facing < 0.0) == (ray.shear[2] > 0.0)
+}
+
+/// Whether a triangle that the ray's line meets is one that the ray is to hit: by masks and by culling.
+pub fn walk_accepts(walk: &Walk, grid: &Grid, triangle: u32) -> bool {
+    let Filter { mask, cull } = walk.filter;
+    let [flags, _, of_geometry] = grid.triangles[triangle as usize].map(|vertex| vertex[3].to_bits());
+    if mask != u32::MAX && of_geometry & mask == 0 {
+        return false;
+    }
+    if cull == 0 {
+        return true;
+    }
+    let front = sees_front(&walk.ray, grid.triangle(triangle)) != (flags & TRIANGLE_FLIPPED != 0);
+    let culled = cull & if front { CULL_FRONT } else { CULL_BACK } != 0;
+    !culled || flags & TRIANGLE_TWO_SIDED != 0
+}
+
 /// Makes a hit the best.
 pub fn walk_commit(walk: &mut Walk, hit: Intersection, triangle: u32) {
     walk.best_s = hit.s;
@@ -263,7 +310,7 @@ pub fn walk_run(walk: &mut Walk, grid: &Grid, any: bool, counters: &mut Counters
             counters.tests += 1;
             walk.reference += 1;
             observer.test(walk, grid, triangle);
-            if let Some(hit) = walk_test(walk, grid, triangle) {
+            if let Some(hit) = walk_test(walk, grid, triangle).filter(|_| walk_accepts(walk, grid, triangle)) {
                 observer.hit(walk, grid, triangle, hit);
                 walk_commit(walk, hit, triangle);
                 if any {

@@ -17,6 +17,9 @@
 //   }
 //   Hit hit = gridwalk_committed(candidates);
 //
+// gridwalk_geometry(grid, hit.triangle) gives the id of a hit's geometry and the triangle's number within it. The functions _filtered take
+// a mask and what is to be culled beside.
+//
 // A walk that needs more than GRIDWALK_TURNS turns (cells and triangles) ends as GRIDWALK_UNFINISHED. Public are the types Ray and Hit,
 // GridwalkGrid as an opaque address, the constants GRIDWALK_* and the functions gridwalk_*; everything else may change.
 #ifndef GRIDWALK_GLSL
@@ -289,7 +292,12 @@ struct Walk {
     float best_u;
     float best_v;
     uint best_triangle; // GRIDWALK_MISS: none so far
+    uint mask; // of the ray
+    uint cull; // GRIDWALK_CULL_* bits
 };
+
+const uint GRIDWALK_CULL_BACK = 1u;
+const uint GRIDWALK_CULL_FRONT = 2u;
 
 const float BEYOND = 3.0e38;
 
@@ -342,6 +350,8 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
     walk.best_u = 0.0;
     walk.best_v = 0.0;
     walk.best_triangle = GRIDWALK_MISS;
+    walk.mask = 0xFFFFFFFFu;
+    walk.cull = 0u;
     walk_enter(walk, grid);
     return walk;
 }
@@ -379,6 +389,40 @@ bool walk_test(Walk walk, GridHeader grid, uint triangle, out float s, out float
     vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
     vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
     return intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && walk_improves(walk, s, triangle);
+}
+
+// The id of a triangle's geometry, and the triangle's number within it.
+uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
+    TriangleWordsIn words = TriangleWordsIn(grid.header.triangles);
+    return uvec2(words.vertex[3u * triangle + 1u].w, words.vertex[3u * triangle].w & TRIANGLE_NUMBER);
+}
+
+// Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
+bool sees_front(MovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
+    vec3 a = permute(ray, v0 - ray.origin);
+    vec3 e1 = permute(ray, v1 - ray.origin) - a;
+    vec3 e2 = permute(ray, v2 - ray.origin) - a;
+    vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+    float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
+    return (facing < 0.0) == (ray.shear.z > 0.0);
+}
+
+// Whether a triangle that the ray's line meets is one that the ray is to hit: by masks and by culling.
+bool walk_accepts(Walk walk, GridHeader grid, uint triangle) {
+    TriangleWordsIn words = TriangleWordsIn(grid.triangles);
+    if (walk.mask != 0xFFFFFFFFu && (words.vertex[3u * triangle + 2u].w & walk.mask) == 0u) {
+        return false;
+    }
+    if (walk.cull == 0u) {
+        return true;
+    }
+    uint flags = words.vertex[3u * triangle].w;
+    Triangles triangles = Triangles(grid.triangles);
+    bool front = sees_front(walk.ray, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
+                            triangles.vertex[3u * triangle + 2u].xyz);
+    front = front != ((flags & TRIANGLE_FLIPPED) != 0u);
+    bool culled = (walk.cull & (front ? GRIDWALK_CULL_FRONT : GRIDWALK_CULL_BACK)) != 0u;
+    return !culled || (flags & TRIANGLE_TWO_SIDED) != 0u;
 }
 
 void walk_commit(inout Walk walk, float s, float u, float v, uint triangle) {
@@ -426,6 +470,15 @@ GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
     return candidates;
 }
 
+// Candidates of geometries that share a bit with the mask, without what is culled: GRIDWALK_CULL_BACK, GRIDWALK_CULL_FRONT, or 0. A front is
+// the side around which a triangle's vertices go counterclockwise.
+GridwalkCandidates gridwalk_candidates_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+    candidates.walk.mask = mask;
+    candidates.walk.cull = cull;
+    return candidates;
+}
+
 // One turn: a triangle is tested, or the walk steps. True if there is a candidate.
 bool gridwalk_turn(inout GridwalkCandidates candidates) {
     candidates.unfinished = candidates.turns >= GRIDWALK_TURNS;
@@ -437,7 +490,8 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
         candidates.walk.reference += 1u;
         float u;
         float v;
-        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)) {
+        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)
+            && walk_accepts(candidates.walk, candidates.grid, triangle)) {
             candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
             return true;
         }
@@ -476,8 +530,7 @@ Hit gridwalk_committed(GridwalkCandidates candidates) {
     return Hit(hit_distance(walk.ray, candidates.ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
 }
 
-Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) {
-    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+Hit gridwalk_closest_of(GridwalkCandidates candidates) {
     // One loop, in which all invocations take their turns together: see GRIDWALK_TURNS.
     while (candidates.searching) {
         if (gridwalk_turn(candidates)) {
@@ -487,13 +540,24 @@ Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) {
     return gridwalk_committed(candidates);
 }
 
-// The first hit that is found: its triangle is GRIDWALK_MISS if there is none.
-Hit gridwalk_any_hit(GridwalkGrid grid, Ray ray) {
-    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+Hit gridwalk_any_of(GridwalkCandidates candidates) {
     if (gridwalk_next(candidates)) {
         gridwalk_commit(candidates);
     }
     return gridwalk_committed(candidates);
+}
+
+Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) { return gridwalk_closest_of(gridwalk_candidates(grid, ray)); }
+
+Hit gridwalk_closest_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+    return gridwalk_closest_of(gridwalk_candidates_filtered(grid, ray, mask, cull));
+}
+
+// The first hit that is found: its triangle is GRIDWALK_MISS if there is none.
+Hit gridwalk_any_hit(GridwalkGrid grid, Ray ray) { return gridwalk_any_of(gridwalk_candidates(grid, ray)); }
+
+Hit gridwalk_any_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+    return gridwalk_any_of(gridwalk_candidates_filtered(grid, ray, mask, cull));
 }
 
 #endif

@@ -30,15 +30,16 @@ pub static ANY_HIT: Kernel = Kernel {
     spirv: spirv!("../spirv/any_hit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 40,
+    push_constant_size: 56,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
         ("occluded", Access::Write),
         ("state", Access::ReadWrite),
         ("walks", Access::ReadWrite),
+        ("masks", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
 
 /// Kernel `bounds_reduce`, from `glsl/cooperative/bounds_reduce.comp`.
@@ -162,7 +163,7 @@ pub static CLOSEST_CANDIDATE: Kernel = Kernel {
     spirv: spirv!("../spirv/closest_candidate.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 32,
+    push_constant_size: 40,
     accesses: &[("grid", Access::Read), ("rays", Access::Read), ("hits", Access::Write)],
     spec_constants: &[],
 };
@@ -174,7 +175,7 @@ pub static CLOSEST_HIT: Kernel = Kernel {
     spirv: spirv!("../spirv/closest_hit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 48,
+    push_constant_size: 72,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
@@ -182,8 +183,10 @@ pub static CLOSEST_HIT: Kernel = Kernel {
         ("state", Access::ReadWrite),
         ("walks", Access::ReadWrite),
         ("counters", Access::ReadWrite),
+        ("masks", Access::Read),
+        ("geometries", Access::Write),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
 
 /// Kernel `configure`, from `glsl/map/configure.comp`.
@@ -206,6 +209,25 @@ pub static CONFIGURE: Kernel = Kernel {
         ("bricks", Access::Read),
     ],
     spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "BRICK_TILE", 1024)],
+};
+
+/// Kernel `count_hits`, from `glsl/map/count_hits.comp`.
+pub static COUNT_HITS: Kernel = Kernel {
+    name: "count_hits",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/count_hits.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 64,
+    accesses: &[
+        ("grid", Access::Read),
+        ("rays", Access::Read),
+        ("counts", Access::Write),
+        ("state", Access::ReadWrite),
+        ("walks", Access::ReadWrite),
+        ("masks", Access::Read),
+    ],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
 
 /// Kernel `gather`, from `glsl/map/gather.comp`.
@@ -242,6 +264,25 @@ pub static GEOMETRY_SCAN: Kernel = Kernel {
     push_constant_size: 40,
     accesses: &[("records", Access::Read), ("firsts", Access::Write), ("state", Access::Write), ("arguments", Access::Write)],
     spec_constants: &[(1, "ITEMS_EACH", 16), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "BOUNDS_TILE", 2048)],
+};
+
+/// Kernel `nearest_hits`, from `glsl/map/nearest_hits.comp`.
+pub static NEAREST_HITS: Kernel = Kernel {
+    name: "nearest_hits",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/nearest_hits.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 64,
+    accesses: &[
+        ("grid", Access::Read),
+        ("rays", Access::Read),
+        ("hits", Access::ReadWrite),
+        ("state", Access::ReadWrite),
+        ("walks", Access::ReadWrite),
+        ("masks", Access::Read),
+    ],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
 
 /// Kernel `overlap_count`, from `glsl/map/overlap_count.comp`.
@@ -407,9 +448,11 @@ pub static ALL: &[&Kernel] = &[
     &CLOSEST_CANDIDATE,
     &CLOSEST_HIT,
     &CONFIGURE,
+    &COUNT_HITS,
     &GATHER,
     &GATHER_RECORDS,
     &GEOMETRY_SCAN,
+    &NEAREST_HITS,
     &OVERLAP_COUNT,
     &OVERLAP_EMIT,
     &PAIR_ARGS,
@@ -441,7 +484,13 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, walks) == 32);
     assert!(size(|host: &Host| &host.walks) == 8);
-    assert!(size_of::<Host>() == 40);
+    assert!(core::mem::offset_of!(Host, masks) == 40);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 48);
+    assert!(size(|host: &Host| &host.mask) == 4);
+    assert!(core::mem::offset_of!(Host, options) == 52);
+    assert!(size(|host: &Host| &host.options) == 4);
+    assert!(size_of::<Host>() == 56);
 };
 const _: () = {
     use gridwalk_core::layout::Bounds as Host;
@@ -602,7 +651,11 @@ const _: () = {
     assert!(size(|host: &Host| &host.hits) == 8);
     assert!(core::mem::offset_of!(Host, ray_count) == 24);
     assert!(size(|host: &Host| &host.ray_count) == 4);
-    assert!(size_of::<Host>() == 32);
+    assert!(core::mem::offset_of!(Host, mask) == 28);
+    assert!(size(|host: &Host| &host.mask) == 4);
+    assert!(core::mem::offset_of!(Host, cull) == 32);
+    assert!(size(|host: &Host| &host.cull) == 4);
+    assert!(size_of::<Host>() == 40);
 };
 const _: () = {
     use crate::push::ClosestHit as Host;
@@ -618,7 +671,15 @@ const _: () = {
     assert!(size(|host: &Host| &host.walks) == 8);
     assert!(core::mem::offset_of!(Host, counters) == 40);
     assert!(size(|host: &Host| &host.counters) == 8);
-    assert!(size_of::<Host>() == 48);
+    assert!(core::mem::offset_of!(Host, masks) == 48);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, geometries) == 56);
+    assert!(size(|host: &Host| &host.geometries) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 64);
+    assert!(size(|host: &Host| &host.mask) == 4);
+    assert!(core::mem::offset_of!(Host, options) == 68);
+    assert!(size(|host: &Host| &host.options) == 4);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use crate::push::Configure as Host;
@@ -653,6 +714,28 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, exact) == 92);
     assert!(size(|host: &Host| &host.exact) == 4);
     assert!(size_of::<Host>() == 96);
+};
+const _: () = {
+    use crate::push::CountHits as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, counts) == 16);
+    assert!(size(|host: &Host| &host.counts) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 24);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, walks) == 32);
+    assert!(size(|host: &Host| &host.walks) == 8);
+    assert!(core::mem::offset_of!(Host, masks) == 40);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 48);
+    assert!(size(|host: &Host| &host.mask) == 4);
+    assert!(core::mem::offset_of!(Host, options) == 52);
+    assert!(size(|host: &Host| &host.options) == 4);
+    assert!(core::mem::offset_of!(Host, launch) == 56);
+    assert!(size(|host: &Host| &host.launch) == 4);
+    assert!(size_of::<Host>() == 64);
 };
 const _: () = {
     use gridwalk_core::layout::DispatchArguments as Host;
@@ -805,6 +888,30 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, triangle) == 12);
     assert!(size(|host: &Host| &host.triangle) == 4);
     assert!(size_of::<Host>() == 16);
+};
+const _: () = {
+    use crate::push::NearestHits as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, hits) == 16);
+    assert!(size(|host: &Host| &host.hits) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 24);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, walks) == 32);
+    assert!(size(|host: &Host| &host.walks) == 8);
+    assert!(core::mem::offset_of!(Host, masks) == 40);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 48);
+    assert!(size(|host: &Host| &host.mask) == 4);
+    assert!(core::mem::offset_of!(Host, options) == 52);
+    assert!(size(|host: &Host| &host.options) == 4);
+    assert!(core::mem::offset_of!(Host, launch) == 56);
+    assert!(size(|host: &Host| &host.launch) == 4);
+    assert!(core::mem::offset_of!(Host, nearest) == 60);
+    assert!(size(|host: &Host| &host.nearest) == 4);
+    assert!(size_of::<Host>() == 64);
 };
 const _: () = {
     use crate::push::OverlapCount as Host;

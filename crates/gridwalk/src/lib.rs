@@ -112,7 +112,10 @@ pub use sizes::{
     BuildSizes, Capacity, MAX_CELLS, MAX_PAIRS, MAX_RAYS, MAX_TRIANGLES, MAX_VERTICES, REGION_ALIGNMENT, RegionSize, region_bytes,
 };
 pub use sync::{Access, cmd_barrier};
-pub use tracer::{BuildInfo, BuildOptions, DeviceDesc, Geometry, Input, Overlap, RayCount, Records, Region, Timestamps, TraceInfo, Tracer};
+pub use tracer::{
+    BuildInfo, BuildOptions, Cull, DeviceDesc, Geometry, Input, MAX_NEAREST, Overlap, RayCount, Records, Region, Timestamps, TraceInfo,
+    Tracer,
+};
 
 /// The public GLSL include in one piece: trace from your own shader.
 pub const GRIDWALK_GLSL: &str = include_str!("../glsl/gridwalk.glsl");

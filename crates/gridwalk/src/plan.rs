@@ -43,11 +43,13 @@ pub enum Buffer {
     TraceState,
     Walks,
     Counters,
+    Masks,
+    Geometries,
 }
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 28] = [
+    pub const ALL: [Buffer; 30] = [
         Buffer::Positions,
         Buffer::Indices,
         Buffer::Records,
@@ -76,6 +78,8 @@ impl Buffer {
         Buffer::TraceState,
         Buffer::Walks,
         Buffer::Counters,
+        Buffer::Masks,
+        Buffer::Geometries,
     ];
 
     const fn token(self) -> u64 {
@@ -470,6 +474,28 @@ pub(crate) const CONTINUE: u32 = 1;
 pub(crate) const LAST: u32 = 2;
 pub(crate) const RESUME: u32 = 4;
 pub(crate) const COUNT: u32 = 8;
+pub(crate) const EXTRAS: u32 = 16;
+/// The same of `any_hit`, which has neither RESUME nor COUNT.
+pub(crate) const ANY_EXTRAS: u32 = 4;
+
+/// Bits of [`Extras::options`]; those below are `GRIDWALK_CULL_*`.
+pub const OPTION_MASKS: u32 = 4;
+/// See [`OPTION_MASKS`].
+pub const OPTION_GEOMETRIES: u32 = 8;
+
+/// What a trace looks at beside rays and triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extras {
+    /// Mask of all rays.
+    pub mask: u32,
+    /// What is culled, and `OPTION_*` bits.
+    pub options: u32,
+}
+
+impl Extras {
+    /// Nothing beside.
+    pub const NONE: Extras = Extras { mask: u32::MAX, options: 0 };
+}
 
 /// What a trace computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -483,10 +509,19 @@ pub enum Query {
     },
     /// A word a ray: 1 or 0.
     Any,
+    /// A word a ray: the number of hits.
+    Count,
+    /// Some `Hit`s a ray.
+    Nearest {
+        /// How many.
+        nearest: u32,
+        /// Whether they are to lie beyond the last of the existing ones.
+        resume: bool,
+    },
 }
 
 /// A trace over a buffer of rays. `max_rays` is the number of rays, or its bound if the number is in memory.
-pub fn trace_plan(query: Query, max_rays: u32, indirect: bool) -> Plan {
+pub fn trace_plan(query: Query, extras: Extras, max_rays: u32, indirect: bool) -> Plan {
     use Buffer::*;
     let state = TraceState.token();
     let mut plan = Plan::new();
@@ -501,20 +536,40 @@ pub fn trace_plan(query: Query, max_rays: u32, indirect: bool) -> Plan {
             plan.step(Step::new(&TRACE_CONTINUE_ARGS, Dispatch::Direct([1, 1, 1]), push::TraceContinueArgs { state }));
         }
         plan.barrier(Barrier::ShaderAndIndirect);
-        let variant = if turn > 0 { CONTINUE } else { 0 } | if turn == CONTINUATIONS { LAST } else { 0 };
-        let dispatch = Dispatch::Indirect(TraceState, offset_of!(gridwalk_core::layout::TraceState, arguments) as u64);
-        let (grid, rays, walks) = (Header.token(), Rays.token(), Walks.token());
-        plan.step(match query {
-            Query::Closest { resume, count } => {
-                let variant = variant | if resume { RESUME } else { 0 } | if count { COUNT } else { 0 };
-                let counters = Counters.token();
-                Step::new(&CLOSEST_HIT, dispatch, push::ClosestHit { grid, rays, hits: Hits.token(), state, walks, counters })
-                    .variant(variant)
-            }
-            Query::Any => Step::new(&ANY_HIT, dispatch, push::AnyHit { grid, rays, occluded: Hits.token(), state, walks }).variant(variant),
-        });
+        let launch = if turn > 0 { CONTINUE } else { 0 } | if turn == CONTINUATIONS { LAST } else { 0 };
+        plan.step(trace_step(query, extras, launch));
     }
     plan
+}
+
+fn trace_step(query: Query, extras: Extras, launch: u32) -> Step {
+    use Buffer::*;
+    let dispatch = Dispatch::Indirect(TraceState, offset_of!(gridwalk_core::layout::TraceState, arguments) as u64);
+    let (grid, rays, state, walks, masks) = (Header.token(), Rays.token(), TraceState.token(), Walks.token(), Masks.token());
+    let Extras { mask, options } = extras;
+    let extra = if extras == Extras::NONE { 0 } else { EXTRAS };
+    match query {
+        Query::Closest { resume, count } => {
+            let variant = launch | extra | if resume { RESUME } else { 0 } | if count { COUNT } else { 0 };
+            let (hits, counters, geometries) = (Hits.token(), Counters.token(), Geometries.token());
+            let push = push::ClosestHit { grid, rays, hits, state, walks, counters, masks, geometries, mask, options };
+            Step::new(&CLOSEST_HIT, dispatch, push).variant(variant)
+        }
+        Query::Any => {
+            let push = push::AnyHit { grid, rays, occluded: Hits.token(), state, walks, masks, mask, options };
+            let extra = if extra == 0 { 0 } else { ANY_EXTRAS };
+            Step::new(&ANY_HIT, dispatch, push).variant(launch | extra)
+        }
+        Query::Count => {
+            let push = push::CountHits { grid, rays, counts: Hits.token(), state, walks, masks, mask, options, launch, padding: 0 };
+            Step::new(&COUNT_HITS, dispatch, push)
+        }
+        Query::Nearest { nearest, resume } => {
+            let launch = launch | if resume { RESUME } else { 0 };
+            let push = push::NearestHits { grid, rays, hits: Hits.token(), state, walks, masks, mask, options, launch, nearest };
+            Step::new(&NEAREST_HITS, dispatch, push)
+        }
+    }
 }
 
 /// Triangles a dispatch of the brute-force oracle; the loop budget of lavapipe allows no more than 65,535.
@@ -540,7 +595,7 @@ pub(crate) fn brute_force_step(ray_count: u32, triangle_count: u32, first: u32, 
 }
 
 /// The closest hits through the public include.
-pub(crate) fn candidate_step(ray_count: u32, shape: &Shape) -> Step {
+pub(crate) fn candidate_step(ray_count: u32, extras: Extras, shape: &Shape) -> Step {
     Step::new(
         &CLOSEST_CANDIDATE,
         map_groups(ray_count, shape),
@@ -549,6 +604,8 @@ pub(crate) fn candidate_step(ray_count: u32, shape: &Shape) -> Step {
             rays: Buffer::Rays.token(),
             hits: Buffer::Hits.token(),
             ray_count,
+            mask: extras.mask,
+            cull: extras.options,
             padding: 0,
         },
     )

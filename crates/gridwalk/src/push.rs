@@ -107,6 +107,9 @@ pub(crate) struct AnyHit {
     pub(crate) occluded: u64,
     pub(crate) state: u64,
     pub(crate) walks: u64,
+    pub(crate) masks: u64,
+    pub(crate) mask: u32,
+    pub(crate) options: u32,
 }
 
 /// Of kernel `brute_force`.
@@ -150,6 +153,8 @@ pub(crate) struct ClosestCandidate {
     pub(crate) rays: u64,
     pub(crate) hits: u64,
     pub(crate) ray_count: u32,
+    pub(crate) mask: u32,
+    pub(crate) cull: u32,
     pub(crate) padding: u32,
 }
 
@@ -163,6 +168,10 @@ pub(crate) struct ClosestHit {
     pub(crate) state: u64,
     pub(crate) walks: u64,
     pub(crate) counters: u64,
+    pub(crate) masks: u64,
+    pub(crate) geometries: u64,
+    pub(crate) mask: u32,
+    pub(crate) options: u32,
 }
 
 /// Of kernel `configure`.
@@ -300,4 +309,36 @@ pub(crate) struct GeometryScan {
     pub(crate) arguments: u64,
     pub(crate) record_count: u32,
     pub(crate) triangle_capacity: u32,
+}
+
+/// Of kernel `count_hits`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CountHits {
+    pub(crate) grid: u64,
+    pub(crate) rays: u64,
+    pub(crate) counts: u64,
+    pub(crate) state: u64,
+    pub(crate) walks: u64,
+    pub(crate) masks: u64,
+    pub(crate) mask: u32,
+    pub(crate) options: u32,
+    pub(crate) launch: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `nearest_hits`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct NearestHits {
+    pub(crate) grid: u64,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) state: u64,
+    pub(crate) walks: u64,
+    pub(crate) masks: u64,
+    pub(crate) mask: u32,
+    pub(crate) options: u32,
+    pub(crate) launch: u32,
+    pub(crate) nearest: u32,
 }

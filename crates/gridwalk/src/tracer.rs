@@ -6,10 +6,11 @@ use ash::vk;
 use gridwalk_core::GeometryRecord;
 use gridwalk_core::geometry::MAX_GEOMETRIES;
 use gridwalk_core::kernel::Kernel;
+use gridwalk_core::walk;
 
 use crate::error::{Error, Result};
 use crate::kernels::*;
-use crate::plan::{self, Buffer, BuildInputs, Dispatch, Item, MAX_PUSH, Query, Source, Step};
+use crate::plan::{self, Buffer, BuildInputs, Dispatch, Extras, Item, MAX_PUSH, Query, Source, Step};
 use crate::requirements;
 use crate::shape::Shape;
 use crate::sizes::{
@@ -196,7 +197,7 @@ impl RayCount {
     }
 }
 
-/// Arguments of [`Tracer::cmd_closest_hit`] and [`Tracer::cmd_any_hit`].
+/// Arguments of [`Tracer::cmd_closest_hit`], [`Tracer::cmd_any_hit`], [`Tracer::cmd_count_hits`] and [`Tracer::cmd_nearest_hits`].
 #[derive(Clone, Copy, Debug)]
 pub struct TraceInfo {
     /// [`gridwalk_core::Ray`]s.
@@ -212,15 +213,53 @@ pub struct TraceInfo {
     pub resume: bool,
     /// Closest hit only: where each ray's numbers of steps, triangle tests and cells that were not empty are written, as `uvec4`.
     pub counters: Option<Region>,
+    /// Mask of all rays: a geometry is hit only if its mask shares a bit with it. A ray whose mask is 0xFFFFFFFF hits every geometry. One mesh
+    /// without records ([`Input::Mesh`]) has the mask 0xFFFFFFFF.
+    pub mask: u32,
+    /// A `u32` a ray: a mask of its own, of which only the bits of `mask` count.
+    pub masks: Option<Region>,
+    /// Triangles that are not hit because of the side that the ray sees.
+    pub cull: Cull,
+    /// Closest hit only: where the geometry of each hit is written, two `u32` a ray: the id of its record, and the triangle's number within
+    /// it; of a ray that hits nothing twice 0xFFFFFFFF. Left as it is where [`TraceInfo::resume`] leaves the hit.
+    pub geometries: Option<Region>,
+}
+
+/// Sides of triangles that are not hit. The front is where the vertices go round counterclockwise, seen along the ray; records may exchange
+/// front and back, or be exempt ([`gridwalk_core::geometry`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Cull {
+    /// Both sides are hit.
+    #[default]
+    None,
+    /// Only fronts are hit.
+    Back,
+    /// Only backs are hit.
+    Front,
 }
 
 impl TraceInfo {
     /// A trace without options. What is set beside is best put around it, since fields may be added:
     /// `TraceInfo { resume: true, ..TraceInfo::new(rays, hits, count, scratch) }`.
     pub const fn new(rays: Region, hits: Region, count: RayCount, scratch: Region) -> TraceInfo {
-        TraceInfo { rays, hits, count, scratch, resume: false, counters: None }
+        TraceInfo {
+            rays,
+            hits,
+            count,
+            scratch,
+            resume: false,
+            counters: None,
+            mask: u32::MAX,
+            masks: None,
+            cull: Cull::None,
+            geometries: None,
+        }
     }
 }
+
+/// Most hits a ray that [`Tracer::cmd_nearest_hits`] finds at once.
+pub const MAX_NEAREST: u32 = 64;
 
 struct Variant {
     kernel: &'static Kernel,
@@ -246,8 +285,11 @@ pub struct Tracer {
 fn launch_constants(kernel: &'static Kernel) -> (&'static [&'static str], &'static [u32]) {
     match kernel.name {
         "overlap_emit" => (&["EXACT"], &[0, plan::EXACT]),
-        "closest_hit" => (&["CONTINUE", "LAST", "RESUME", "COUNT"], &[0, 1, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15]),
-        "any_hit" => (&["CONTINUE", "LAST"], &[0, 1, 3]),
+        "closest_hit" => (
+            &["CONTINUE", "LAST", "RESUME", "COUNT", "EXTRAS"],
+            &[0, 1, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15, 16, 17, 19, 20, 21, 23, 24, 25, 27, 28, 29, 31],
+        ),
+        "any_hit" => (&["CONTINUE", "LAST", "EXTRAS"], &[0, 1, 3, 4, 5, 7]),
         _ => (&[], &[0]),
     }
 }
@@ -477,7 +519,14 @@ impl Tracer {
             Buffer::Occupancy => in_scratch(scratch.occupancy),
             Buffer::DistancesX => in_scratch(scratch.distances_x),
             Buffer::DistancesY => in_scratch(scratch.distances_y),
-            Buffer::Rays | Buffer::Hits | Buffer::RayCount | Buffer::TraceState | Buffer::Walks | Buffer::Counters => Region::NONE,
+            Buffer::Rays
+            | Buffer::Hits
+            | Buffer::RayCount
+            | Buffer::TraceState
+            | Buffer::Walks
+            | Buffer::Counters
+            | Buffer::Masks
+            | Buffer::Geometries => Region::NONE,
         }
     }
 
@@ -539,15 +588,59 @@ impl Tracer {
         if info.resume || info.counters.is_some() {
             return Err(Error::Option { option: "resume, counters", value: "set".into(), expected: "closest hit alone has them" });
         }
+        only_closest_has_geometries(info)?;
         // SAFETY: the caller's contract.
         unsafe { self.trace(cmd, grid, info, Query::Any, 4) }
+    }
+
+    /// Records a count of the triangles that each ray hits in its interval, as a `u32` a ray, or [`gridwalk_core::UNFINISHED`]. Barriers as
+    /// for [`Tracer::cmd_closest_hit`].
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], [`Error::Region`], [`Error::Option`]; then nothing was recorded.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_closest_hit`].
+    pub unsafe fn cmd_count_hits(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo) -> Result<()> {
+        if info.resume || info.counters.is_some() {
+            return Err(Error::Option { option: "resume, counters", value: "set".into(), expected: "counts of hits have none" });
+        }
+        only_closest_has_geometries(info)?;
+        // SAFETY: the caller's contract.
+        unsafe { self.trace(cmd, grid, info, Query::Count, 4) }
+    }
+
+    /// Records a search for the `nearest` nearest hits of each ray, at most [`MAX_NEAREST`]: as many [`gridwalk_core::Hit`]s a ray one after
+    /// another, in order of distance and of equal ones in order of triangle, then misses. With [`TraceInfo::resume`] those beyond the last
+    /// hit that lies there: so all hits of a ray can be had in portions. Where a walk was given up, the rest is
+    /// [`gridwalk_core::UNFINISHED`]. Barriers as for [`Tracer::cmd_closest_hit`].
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], also for more hits in all than a trace has rays; [`Error::Region`], [`Error::Option`]; then nothing was recorded.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_closest_hit`]; and with `resume`, the hits are of this grid and of these rays.
+    pub unsafe fn cmd_nearest_hits(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo, nearest: u32) -> Result<()> {
+        if !(1..=MAX_NEAREST).contains(&nearest) {
+            return Err(Error::Option { option: "nearest", value: nearest.to_string(), expected: "from 1 to 64 hits a ray" });
+        }
+        if info.counters.is_some() {
+            return Err(Error::Option { option: "counters", value: "set".into(), expected: "closest hit alone has them" });
+        }
+        only_closest_has_geometries(info)?;
+        let hits = u64::from(info.count.max()) * u64::from(nearest);
+        if hits > MAX_RAYS.into() {
+            return Err(Error::Capacity { what: "hits", given: hits, limit: MAX_RAYS.into() });
+        }
+        // SAFETY: the caller's contract.
+        unsafe { self.trace(cmd, grid, info, Query::Nearest { nearest, resume: info.resume }, 16 * u64::from(nearest)) }
     }
 
     /// # Safety
     /// As for [`Tracer::cmd_closest_hit`].
     unsafe fn trace(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo, query: Query, hit_size: u64) -> Result<()> {
         let region = self.trace_regions(grid, info, hit_size)?;
-        let plan = plan::trace_plan(query, info.count.max(), matches!(info.count, RayCount::Indirect { .. }));
+        let plan = plan::trace_plan(query, extras(info), info.count.max(), matches!(info.count, RayCount::Indirect { .. }));
         // SAFETY: the caller's contract; the plan stays inside of the regions that were checked.
         unsafe { self.record(cmd, plan.items(), region, None) };
         Ok(())
@@ -575,6 +668,14 @@ impl Tracer {
         if info.counters.is_some() {
             check_region("counters", &counters, u64::from(max) * 16, 16)?;
         }
+        let masks = info.masks.unwrap_or(Region::NONE);
+        if info.masks.is_some() {
+            check_region("masks", &masks, u64::from(max) * 4, 4)?;
+        }
+        let geometries = info.geometries.unwrap_or(Region::NONE);
+        if info.geometries.is_some() {
+            check_region("geometries", &geometries, u64::from(max) * 8, 8)?;
+        }
         let (rays, hits, scratch) = (info.rays, info.hits, info.scratch);
         let header = Region { address: grid, ..Region::NONE };
         Ok(move |buffer| match buffer {
@@ -583,6 +684,8 @@ impl Tracer {
             Buffer::Hits => hits,
             Buffer::RayCount => count,
             Buffer::Counters => counters,
+            Buffer::Masks => masks,
+            Buffer::Geometries => geometries,
             Buffer::TraceState => scratch.part(layout.state.offset, layout.state.size),
             Buffer::Walks => scratch.part(layout.walks.offset, layout.walks.size),
             _ => Region::NONE,
@@ -630,7 +733,7 @@ impl Tracer {
     #[doc(hidden)]
     pub unsafe fn cmd_closest_candidate(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo) -> Result<()> {
         let region = self.trace_regions(grid, info, 16)?;
-        let step = plan::candidate_step(info.count.max(), &self.shape);
+        let step = plan::candidate_step(info.count.max(), extras(info), &self.shape);
         // SAFETY: the caller's contract.
         unsafe { self.record_step(cmd, &step, &region) };
         Ok(())
@@ -710,6 +813,24 @@ impl Drop for Tracer {
             self.device.destroy_pipeline_layout(self.layout, None);
         }
     }
+}
+
+fn only_closest_has_geometries(info: &TraceInfo) -> Result<()> {
+    match info.geometries {
+        None => Ok(()),
+        Some(_) => Err(Error::Option { option: "geometries", value: "set".into(), expected: "closest hit alone has them" }),
+    }
+}
+
+fn extras(info: &TraceInfo) -> Extras {
+    let cull = match info.cull {
+        Cull::None => 0,
+        Cull::Back => walk::CULL_BACK,
+        Cull::Front => walk::CULL_FRONT,
+    };
+    let masks = if info.masks.is_some() { plan::OPTION_MASKS } else { 0 };
+    let geometries = if info.geometries.is_some() { plan::OPTION_GEOMETRIES } else { 0 };
+    Extras { mask: info.mask, options: cull | masks | geometries }
 }
 
 /// What the plan needs to know of the input, if it fits.

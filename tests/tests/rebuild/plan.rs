@@ -1,7 +1,7 @@
 //! Plans as data: every barrier is needed, and none is missing.
 
 use gridwalk::hazard::{HazardKind, find_hazard, find_hazard_in};
-use gridwalk::plan::{Barrier, BuildInputs, CONTINUATIONS, Dispatch, Item, Plan, Query, Source, build_plan, trace_plan};
+use gridwalk::plan::{Barrier, BuildInputs, CONTINUATIONS, Dispatch, Extras, Item, Plan, Query, Source, build_plan, trace_plan};
 use gridwalk::{Capacity, Shape};
 
 use crate::kernels::{ODD, TINY};
@@ -27,9 +27,15 @@ fn builds() -> Vec<(String, Plan)> {
 
 fn traces() -> Vec<(String, Plan)> {
     let closest = [(false, false), (true, false), (false, true), (true, true)];
-    let queries = closest.map(|(resume, count)| Query::Closest { resume, count }).into_iter().chain([Query::Any]);
+    let queries = closest.map(|(resume, count)| Query::Closest { resume, count }).into_iter().chain([
+        Query::Any,
+        Query::Count,
+        Query::Nearest { nearest: 4, resume: true },
+    ]);
     queries
-        .flat_map(|query| [false, true].map(|indirect| (format!("{query:?}, indirect {indirect}"), trace_plan(query, 1_000, indirect))))
+        .flat_map(|query| {
+            [false, true].map(|indirect| (format!("{query:?}, indirect {indirect}"), trace_plan(query, Extras::NONE, 1_000, indirect)))
+        })
         .collect()
 }
 

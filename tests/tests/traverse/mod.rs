@@ -1,9 +1,11 @@
 //! Rays through grids.
 
+mod all_hits;
 mod brute_force;
 mod compare;
 mod conventions;
 mod counts;
+mod filters;
 mod hard_rays;
 mod long_lists;
 mod meshes;

@@ -8,7 +8,7 @@ use gridwalk_core::twin::brute_force::brute_force_of;
 use gridwalk_core::twin::closest_candidate::gridwalk_closest_hit;
 use gridwalk_core::twin::closest_hit::{Launch, Slot, closest_hit_of};
 use gridwalk_core::twin::{trace_args::trace_args, trace_continue_args::trace_continue_args};
-use gridwalk_core::walk::{GRIDWALK_TURNS, Grid, Observer, Walk};
+use gridwalk_core::walk::{Filter, GRIDWALK_TURNS, Grid, Observer, Walk};
 use gridwalk_tests::gpu::{Gpu, TraceOptions};
 use rayon::prelude::*;
 
@@ -18,14 +18,14 @@ use super::{meshes, rays};
 const CONTINUATIONS: usize = gridwalk::plan::CONTINUATIONS as usize;
 
 /// The launches of a trace.
-pub fn launches(resume: bool) -> [Launch; CONTINUATIONS + 1] {
-    std::array::from_fn(|turn| Launch { continues: turn > 0, last: turn == CONTINUATIONS, resume })
+pub fn launches(resume: bool, filter: Filter) -> [Launch; CONTINUATIONS + 1] {
+    std::array::from_fn(|turn| Launch { continues: turn > 0, last: turn == CONTINUATIONS, resume, filter })
 }
 
 /// All launches of a trace of the closest hit of one ray.
 pub fn closest(grid: &Grid, ray: &Ray, existing: Option<Hit>, observer: &mut impl Observer) -> Slot {
     let mut slot = Slot { hit: existing.unwrap_or(Hit::MISS), ..Slot::NEW };
-    for launch in launches(existing.is_some()) {
+    for launch in launches(existing.is_some(), Filter::default()) {
         closest_hit_of(grid, ray, &mut slot, launch, observer);
     }
     slot
@@ -34,7 +34,7 @@ pub fn closest(grid: &Grid, ray: &Ray, existing: Option<Hit>, observer: &mut imp
 /// All launches of a trace of any hit of one ray.
 pub fn any(grid: &Grid, ray: &Ray) -> u32 {
     let (mut occluded, mut walk) = (0, WalkState::default());
-    for launch in launches(false) {
+    for launch in launches(false, Filter::default()) {
         any_hit_of(grid, ray, &mut occluded, &mut walk, launch, &mut ());
     }
     occluded

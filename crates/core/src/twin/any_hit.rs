@@ -4,7 +4,7 @@ use crate::intersect::move_ray;
 use crate::layout::{TraceState, WalkState};
 use crate::ray::{MISS, Ray, UNFINISHED};
 use crate::twin::closest_hit::Launch;
-use crate::walk::{Counters, Grid, Observer, walk_begin, walk_restore, walk_run, walk_save};
+use crate::walk::{Counters, Grid, Observer, Walk, walk_begin, walk_restore, walk_run, walk_save};
 
 /// One invocation; true if the walk was given up and is to be continued.
 pub fn any_hit_of(grid: &Grid, ray: &Ray, occluded: &mut u32, saved: &mut WalkState, launch: Launch, observer: &mut impl Observer) -> bool {
@@ -14,7 +14,7 @@ pub fn any_hit_of(grid: &Grid, ray: &Ray, occluded: &mut u32, saved: &mut WalkSt
     let mut result = 0;
     let mut given_up = false;
     if let Some(moved) = move_ray(ray, grid.header) {
-        let mut walk = walk_begin(grid, moved);
+        let mut walk = Walk { filter: launch.filter, ..walk_begin(grid, moved) };
         if launch.continues {
             walk_restore(&mut walk, grid, saved);
         } else {

@@ -2,7 +2,7 @@
 
 use crate::intersect::{Intersection, hit_distance, move_ray};
 use crate::ray::{Hit, MISS, Ray, UNFINISHED};
-use crate::walk::{GRIDWALK_TURNS, Grid, Walk, walk_begin, walk_commit, walk_is_over, walk_step, walk_test};
+use crate::walk::{Filter, GRIDWALK_TURNS, Grid, Walk, walk_accepts, walk_begin, walk_commit, walk_is_over, walk_step, walk_test};
 
 /// Candidates of a ray: hits, each closer than what has been committed so far.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,12 @@ pub fn gridwalk_candidates(grid: &Grid, ray: &Ray) -> GridwalkCandidates {
     GridwalkCandidates { hit: Hit::MISS, ray: *ray, walk, s: 0.0, turns: 0, searching: walk.is_some(), unfinished: false }
 }
 
+/// Begins a search among what a filter lets through.
+pub fn gridwalk_candidates_filtered(grid: &Grid, ray: &Ray, filter: Filter) -> GridwalkCandidates {
+    let candidates = gridwalk_candidates(grid, ray);
+    GridwalkCandidates { walk: candidates.walk.map(|walk| Walk { filter, ..walk }), ..candidates }
+}
+
 /// Finds the next candidate; false when there is none, and from then on.
 pub fn gridwalk_next(grid: &Grid, candidates: &mut GridwalkCandidates) -> bool {
     let Some(walk) = &mut candidates.walk else { return false };
@@ -36,7 +42,7 @@ pub fn gridwalk_next(grid: &Grid, candidates: &mut GridwalkCandidates) -> bool {
         if walk.reference < walk.list_end {
             let triangle = grid.references[walk.reference as usize];
             walk.reference += 1;
-            if let Some(Intersection { s, u, v }) = walk_test(walk, grid, triangle) {
+            if let Some(Intersection { s, u, v }) = walk_test(walk, grid, triangle).filter(|_| walk_accepts(walk, grid, triangle)) {
                 candidates.s = s;
                 candidates.hit = Hit { t: hit_distance(&walk.ray, &candidates.ray, s), u, v, triangle };
                 return true;

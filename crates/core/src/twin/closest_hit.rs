@@ -3,7 +3,7 @@
 use crate::intersect::{Intersection, distance_to_s, hit_distance, move_ray};
 use crate::layout::{TraceState, WalkState};
 use crate::ray::{Hit, Ray, UNFINISHED};
-use crate::walk::{Counters, Grid, Observer, walk_begin, walk_restore, walk_run, walk_save};
+use crate::walk::{Counters, Filter, Grid, Observer, Walk, walk_begin, walk_restore, walk_run, walk_save};
 
 /// Constants that the launches of a trace kernel differ in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,6 +14,8 @@ pub struct Launch {
     pub last: bool,
     /// Existing hits are to be beaten.
     pub resume: bool,
+    /// What the rays may hit.
+    pub filter: Filter,
 }
 
 /// What the kernel has for each ray beside the ray itself.
@@ -52,7 +54,7 @@ pub fn closest_hit_of(grid: &Grid, ray: &Ray, slot: &mut Slot, launch: Launch, o
         if launch.resume && hit.is_hit() {
             moved.s_max = distance_to_s(&moved, hit.t);
         }
-        let mut walk = walk_begin(grid, moved);
+        let mut walk = Walk { filter: launch.filter, ..walk_begin(grid, moved) };
         if launch.continues {
             walk_restore(&mut walk, grid, &slot.walk);
         } else {
