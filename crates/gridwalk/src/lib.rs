@@ -23,9 +23,12 @@
 //! Regions begin at multiples of [`REGION_ALIGNMENT`] of their device address, do not overlap, and may lie in one buffer. Contents need no
 //! initialization and survive nothing but their purpose: a build overwrites all that it later reads.
 //!
-//! **Geometry.** Positions are tightly packed `f32` triples, indices tightly packed `u32` triples ([`Geometry`]). A triangle with a vertex
-//! that is not finite, or with an index beyond the positions, is dropped and counted. Neither buffer is read after the build: the grid
-//! has its own copy of the triangles.
+//! **Geometry.** One mesh, as tightly packed `f32` triples and `u32` triples ([`Input::Mesh`]); or any number of geometries and instances, as
+//! [`GeometryRecord`]s in device memory that the host or a shader has written ([`Input::Records`]): position formats with stride, scale and
+//! offset, index types, a transform, a mask, and a triangle count that may lie in memory. Triangles are numbered over all records in
+//! order; those beyond the capacity are left out and reported. A triangle with a vertex that is not finite, or with an index beyond the
+//! positions, is dropped and counted. Nothing of this is read after the build: the grid has its own copy of the triangles. Triangles that
+//! share vertices by index within a record share them exactly; between records, only if the arithmetic of both gives the same.
 //!
 //! **Barriers.** The caller puts a memory barrier ([`cmd_barrier`], or one of its own with these masks)
 //! - from whatever wrote the geometry, and from [`Tracer::TRACE`] of the grid's last use, to [`Tracer::BUILD`] before a build;
@@ -39,6 +42,9 @@
 //! **State.** A recording binds compute pipelines and sets push constants; what was bound before is lost. Descriptor sets, graphics state and
 //! everything else stay. A command buffer may be submitted again after its geometry, rays or counts changed: all numbers are read on
 //! the device. With timestamps, a recording resets the queries that it writes.
+//!
+//! **In flight.** A grid that is traced and a grid that is built share nothing: frame n may be traced while the grid of frame n + 1 is built,
+//! each with scratch of its own. One scratch serves builds, and one trace scratch traces, that barriers keep apart.
 //!
 //! **Overflow.** Pairs beyond the capacity are dropped, never written out of bounds; the report says so and what would have sufficed
 //! ([`Report::pairs_overflowed`], [`Report::needed_pairs`]). Such a grid is sound but misses triangles. A density that asks for more cells than
@@ -56,12 +62,14 @@
 //! or direction, or with a direction of zero misses. Components of a direction below 2^-40 of the largest count as zero. A ray that starts
 //! outside of the scene box is traced from its entry into the box; one that starts so far away that its origin's rounding exceeds the
 //! box's padding is traced as the rounded ray. A walk that was given up after its continuations has triangle [`UNFINISHED`]: neither a hit
-//! nor a miss. No ray passes between two triangles that share an edge.
+//! nor a miss. [`Tracer::cmd_any_hit`] tells whether there is a hit, [`Tracer::cmd_count_hits`] how many, [`Tracer::cmd_nearest_hits`] gives the
+//! nearest in order; masks and culling restrict all of them ([`TraceInfo::mask`], [`TraceInfo::cull`]). No ray passes between two triangles that share an edge.
 //!
 //! # In your own shader
 //!
 //! [`GRIDWALK_GLSL`] is the text of one include, without bindings: pass the grid region's address and call `gridwalk_closest_hit`,
-//! `gridwalk_any_hit`, or iterate over candidates. Its head documents the interface.
+//! `gridwalk_any_hit`, or iterate over candidates. Its head documents the interface; [`GRIDWALK_GLSL_PATH`] is where it lies, for build
+//! scripts. Of Slang and HLSL nothing is offered: no compiler of theirs is part of the tests.
 //!
 //! # Example
 //!
@@ -119,3 +127,6 @@ pub use tracer::{
 
 /// The public GLSL include in one piece: trace from your own shader.
 pub const GRIDWALK_GLSL: &str = include_str!("../glsl/gridwalk.glsl");
+
+/// Where [`GRIDWALK_GLSL`] lay when this crate was compiled: for the include path of a shader compiler in a build script.
+pub const GRIDWALK_GLSL_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/glsl/gridwalk.glsl");

@@ -5,6 +5,7 @@ mod api;
 mod crates;
 mod divergence;
 mod glsl;
+mod include;
 mod spirv;
 mod tree;
 

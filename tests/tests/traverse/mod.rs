@@ -6,6 +6,7 @@ mod compare;
 mod conventions;
 mod counts;
 mod filters;
+mod frames;
 mod hard_rays;
 mod long_lists;
 mod meshes;
