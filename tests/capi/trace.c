@@ -15,7 +15,7 @@
 
 #include "gridwalk.h"
 
-enum { ACROSS = 24, AROUND = 48, VERTICES = ACROSS * AROUND, TRIANGLES = 2 * VERTICES, RAYS = 5000, FEWER_RAYS = 3333, MAX_STEPS = 256 };
+enum { ACROSS = 24, AROUND = 48, VERTICES = ACROSS * AROUND, TRIANGLES = 2 * VERTICES, RAYS = 5000, FEWER_RAYS = 3333, MAX_STEPS = 256, NEAREST = 4 };
 
 /* Setting a structure to zero works for C and C++ alike, whatever its first field is. */
 #define ZERO(object) memset(&(object), 0, sizeof(object))
@@ -221,6 +221,7 @@ static Memory memories[32];
 static int memory_count;
 
 static Memory *make_memory(VkDeviceSize size, VkBufferUsageFlags usage) {
+    if (memory_count == sizeof memories / sizeof *memories) fail("room for another buffer");
     Memory *made = &memories[memory_count++];
     VkBufferCreateInfo info;
     ZERO(info);
@@ -264,9 +265,19 @@ static Memory *make_region(GridwalkRegionSize size) {
 /* Meshes and rays. */
 
 typedef struct Mesh {
+    /* On the device, and as the CPU reads them. */
     Memory *positions, *indices;
+    float *corners;
+    uint32_t *triangles;
     uint32_t vertex_count, triangle_count;
 } Mesh;
+
+static Mesh make_mesh(uint32_t vertex_count, uint32_t triangle_count) {
+    Mesh mesh = {make_memory(vertex_count * 12, 0), make_memory(triangle_count * 12, 0), NULL, NULL, vertex_count, triangle_count};
+    mesh.corners = (float *)mesh.positions->data;
+    mesh.triangles = (uint32_t *)mesh.indices->data;
+    return mesh;
+}
 
 static uint32_t seed = 2463534242u;
 
@@ -291,8 +302,8 @@ static void place_torus(float *positions, float time) {
 }
 
 static Mesh make_torus(void) {
-    Mesh mesh = {make_memory(VERTICES * 12, 0), make_memory(TRIANGLES * 12, 0), VERTICES, TRIANGLES};
-    uint32_t *index = (uint32_t *)mesh.indices->data;
+    Mesh mesh = make_mesh(VERTICES, TRIANGLES);
+    uint32_t *index = mesh.triangles;
     for (uint32_t i = 0; i < ACROSS; ++i)
         for (uint32_t j = 0; j < AROUND; ++j) {
             uint32_t k = (i + 1) % ACROSS, l = (j + 1) % AROUND;
@@ -308,9 +319,9 @@ static Mesh make_torus(void) {
 static Mesh make_floor(void) {
     static const float positions[5][3] = {{-2, -0.3f, -2}, {2, -0.3f, -2}, {2, -0.3f, 2}, {-2, -0.3f, 2}, {0, HUGE_VALF, 0}};
     static const uint32_t indices[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 4}, {0, 1, 5}};
-    Mesh mesh = {make_memory(sizeof positions, 0), make_memory(sizeof indices, 0), 5, 4};
-    memcpy(mesh.positions->data, positions, sizeof positions);
-    memcpy(mesh.indices->data, indices, sizeof indices);
+    Mesh mesh = make_mesh(5, 4);
+    memcpy(mesh.corners, positions, sizeof positions);
+    memcpy(mesh.triangles, indices, sizeof indices);
     return mesh;
 }
 
@@ -334,6 +345,8 @@ static void make_rays(GridwalkRay *rays) {
 typedef struct Bounds {
     /* Nearest distance of a hit that is beyond doubt, and of one that may be one, being so near to an edge or to an end of the ray. */
     double sure, possible;
+    /* Fewest and most hits. */
+    uint32_t fewest, most;
 } Bounds;
 
 static void cross(const double a[3], const double b[3], double c[3]) {
@@ -348,12 +361,12 @@ static double shift;
 
 /* Möller and Trumbore 1997. Returns 0 where there is no distance. */
 static int meet(const Mesh *mesh, uint32_t triangle, const GridwalkRay *ray, double *t, double *u, double *v) {
-    const uint32_t *index = (const uint32_t *)mesh->indices->data + 3 * triangle;
+    const uint32_t *index = mesh->triangles + 3 * triangle;
     double corner[3][3], edge_1[3], edge_2[3], from[3], direction[3], p[3], q[3];
     for (int i = 0; i < 3; ++i) {
         if (index[i] >= mesh->vertex_count) return 0;
         for (int axis = 0; axis < 3; ++axis) {
-            corner[i][axis] = ((const float *)mesh->positions->data)[3 * index[i] + (uint32_t)axis] + shift;
+            corner[i][axis] = mesh->corners[3 * index[i] + (uint32_t)axis] + shift;
             if (!isfinite(corner[i][axis])) return 0;
         }
     }
@@ -378,8 +391,10 @@ static void brute_force(const Mesh *mesh, const GridwalkRay *ray, Bounds *bounds
         double t, u, v;
         if (!meet(mesh, i, ray, &t, &u, &v)) continue;
         if (u < -slack || v < -slack || u + v > 1 + slack || t < ray->t_min - slack || t > ray->t_max + slack) continue;
+        ++bounds->most;
         if (t < bounds->possible) bounds->possible = t;
         if (u < slack || v < slack || u + v > 1 - slack || t < ray->t_min + slack || t > ray->t_max - slack) continue;
+        ++bounds->fewest;
         if (t < bounds->sure) bounds->sure = t;
     }
 }
@@ -403,6 +418,52 @@ static void same_report(const GridwalkReport *report, uint32_t triangles, uint32
                 report->pairs);
         fail("the report tells of the build");
     }
+}
+
+static VkCommandPool command_pool;
+
+static void make_commands(void) {
+    VkCommandPoolCreateInfo info;
+    ZERO(info);
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    info.queueFamilyIndex = queue_family;
+    check_vk(vkCreateCommandPool_(device, &info, NULL, &command_pool), "vkCreateCommandPool");
+}
+
+static VkCommandBuffer begin_commands(void) {
+    VkCommandBufferAllocateInfo allocate;
+    ZERO(allocate);
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = command_pool;
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    VkCommandBuffer cmd;
+    check_vk(vkAllocateCommandBuffers_(device, &allocate, &cmd), "vkAllocateCommandBuffers");
+    VkCommandBufferBeginInfo begin;
+    ZERO(begin);
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    check_vk(vkBeginCommandBuffer_(cmd, &begin), "vkBeginCommandBuffer");
+    return cmd;
+}
+
+static void submit_and_wait(VkCommandBuffer cmd) {
+    VkSubmitInfo submit;
+    ZERO(submit);
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &cmd;
+    VkFence no_fence;
+    ZERO(no_fence);
+    check_vk(vkQueueSubmit_(queue, 1, &submit, no_fence), "vkQueueSubmit");
+    check_vk(vkQueueWaitIdle_(queue), "vkQueueWaitIdle");
+}
+
+/* Behind a build or a trace, before the next one, and before the host reads. An engine would name what it needs. */
+static void barrier(const GridwalkTracer *tracer, VkCommandBuffer cmd) {
+    check(gridwalk_cmd_barrier(tracer, cmd, GRIDWALK_BUILD_STAGES | GRIDWALK_TRACE_STAGES, GRIDWALK_BUILD_ACCESS | GRIDWALK_TRACE_ACCESS,
+                               GRIDWALK_BUILD_STAGES | GRIDWALK_TRACE_STAGES | GRIDWALK_HOST_READ_STAGES,
+                               GRIDWALK_BUILD_ACCESS | GRIDWALK_TRACE_ACCESS | GRIDWALK_HOST_READ_ACCESS),
+          "gridwalk_cmd_barrier");
 }
 
 static GridwalkBuildInfo build_info(const Mesh *mesh, const Memory *grid, const Memory *scratch, const Memory *report,
@@ -514,6 +575,124 @@ static void refuse_descriptions(const GridwalkDeviceDesc *desc) {
     gridwalk_tracer_destroy(NULL);
 }
 
+/* Adds what a record makes of a mesh to another mesh; triangles that a mask does not see get an index out of range. */
+static void flatten(Mesh *to, const Mesh *from, const GridwalkGeometryRecord *record, int seen) {
+    uint32_t first = to->vertex_count;
+    for (uint32_t i = 0; i < from->vertex_count; ++i, ++to->vertex_count)
+        for (int axis = 0; axis < 3; ++axis) {
+            float sum = record->transform[axis][3];
+            for (int k = 0; k < 3; ++k) sum += record->transform[axis][k] * (from->corners[3 * i + (uint32_t)k] * record->scale[k]);
+            to->corners[3 * to->vertex_count + (uint32_t)axis] = sum;
+        }
+    for (uint32_t i = 0; i < 3 * from->triangle_count; ++i) {
+        uint32_t index = from->triangles[i];
+        to->triangles[3 * to->triangle_count + i] = seen && index < from->vertex_count ? first + index : UINT32_MAX;
+    }
+    to->triangle_count += from->triangle_count;
+}
+
+/* A grid of three records: half of a torus, by a number that the device reads; a smaller torus beside it; a floor. */
+static void trace_records(const GridwalkTracer *tracer, const Mesh *torus, const Mesh *ground, const Memory *rays) {
+    enum { HALF = TRIANGLES / 2, ALL = HALF + TRIANGLES + 4, TRACES = 5 };
+    const uint32_t first[3] = {0, HALF, HALF + TRIANGLES}, ids[3] = {10, 20, 30}, visible[3] = {1, 2, 3};
+    Memory *count = make_memory(4, 0), *records = make_memory(3 * sizeof(GridwalkGeometryRecord), 0);
+    const uint32_t half = HALF;
+    memcpy(count->data, &half, 4);
+    GridwalkGeometryRecord *record = (GridwalkGeometryRecord *)records->data;
+    refused(gridwalk_geometry_record_init(NULL), GRIDWALK_RESULT_ERROR_NULL, "record");
+    for (int i = 0; i < 3; ++i) {
+        const Mesh *mesh = i == 2 ? ground : torus;
+        check(gridwalk_geometry_record_init(&record[i]), "gridwalk_geometry_record_init");
+        record[i].positions = mesh->positions->region.address;
+        record[i].indices = mesh->indices->region.address;
+        record[i].vertex_count = mesh->vertex_count;
+        record[i].triangle_count = mesh->triangle_count;
+        record[i].id = ids[i];
+        record[i].mask = visible[i];
+    }
+    record[0].count = count->region.address;
+    record[1].scale[0] = record[1].scale[1] = record[1].scale[2] = 0.5f;
+    record[1].transform[1][3] = 1;
+
+    GridwalkCapacity capacity = {ALL, 16 * ALL, 16 * ALL};
+    GridwalkBuildSizes sizes;
+    GridwalkRegionSize trace_size;
+    check(gridwalk_build_sizes(tracer, &capacity, &sizes), "gridwalk_build_sizes");
+    check(gridwalk_trace_scratch_size(tracer, RAYS, &trace_size), "gridwalk_trace_scratch_size");
+    Memory *grid = make_region(sizes.grid), *scratch = make_region(sizes.scratch), *report = make_region(sizes.report);
+    Memory *trace_scratch = make_region(trace_size), *masks = make_memory(RAYS * 4, 0), *geometries = make_memory(RAYS * 8, 0);
+    Memory *hits[3], *counts = make_memory(RAYS * 4, 0), *nearest = make_memory(RAYS * NEAREST * sizeof(GridwalkHit), 0);
+    for (int i = 0; i < 3; ++i) hits[i] = make_memory(RAYS * sizeof(GridwalkHit), 0);
+    for (uint32_t i = 0; i < RAYS; ++i) ((uint32_t *)masks->data)[i] = 1 + i % 2;
+
+    GridwalkBuildInfo build;
+    ZERO(build);
+    build.struct_size = sizeof build;
+    build.records = records->region;
+    build.record_count = 3;
+    build.grid = grid->region;
+    build.scratch = scratch->region;
+    build.report = report->region;
+    build.capacity = capacity;
+    VkCommandBuffer cmd = begin_commands();
+    GridwalkBuildInfo bad = build;
+    bad.geometry.triangle_count = 1;
+    refused(gridwalk_cmd_build(tracer, cmd, &bad), GRIDWALK_RESULT_ERROR_OPTION, "records");
+    check(gridwalk_cmd_build(tracer, cmd, &build), "gridwalk_cmd_build");
+    barrier(tracer, cmd);
+    for (uint32_t i = 0; i < TRACES; ++i) {
+        /* The closest hit of both sides, of fronts, of backs; how many; the nearest of them. */
+        GridwalkTraceInfo trace = trace_info(rays, i < 3 ? hits[i] : i == 3 ? counts : nearest, trace_scratch, RAYS);
+        trace.masks = masks->region;
+        if (i == 0) trace.geometries = geometries->region;
+        if (i < 3) trace.cull = i;
+        GridwalkTraceInfo bad_trace = trace;
+        bad_trace.cull = 3;
+        refused(gridwalk_cmd_closest_hit(tracer, cmd, grid->region.address, &bad_trace), GRIDWALK_RESULT_ERROR_OPTION, "cull");
+        check(i < 3    ? gridwalk_cmd_closest_hit(tracer, cmd, grid->region.address, &trace)
+              : i == 3 ? gridwalk_cmd_count_hits(tracer, cmd, grid->region.address, &trace)
+                       : gridwalk_cmd_nearest_hits(tracer, cmd, grid->region.address, &trace, NEAREST),
+              "a trace of records");
+        refused(gridwalk_cmd_nearest_hits(tracer, cmd, grid->region.address, &trace, 0), GRIDWALK_RESULT_ERROR_OPTION, "nearest");
+        barrier(tracer, cmd);
+    }
+    check_vk(vkEndCommandBuffer_(cmd), "vkEndCommandBuffer");
+    submit_and_wait(cmd);
+    same_report((const GridwalkReport *)report->data, ALL, 2);
+
+    static float corners[2][3 * (2 * VERTICES + 5)];
+    static uint32_t triangles[2][3 * ALL];
+    Mesh flat[2], part = *torus;
+    part.triangle_count = HALF;
+    for (int odd = 0; odd < 2; ++odd) {
+        ZERO(flat[odd]);
+        flat[odd].corners = corners[odd];
+        flat[odd].triangles = triangles[odd];
+        for (int i = 0; i < 3; ++i)
+            flatten(&flat[odd], i == 0 ? &part : i == 1 ? torus : ground, &record[i], (int)visible[i] & (1 + odd));
+    }
+    for (int i = 0; i < RAYS; ++i) {
+        const GridwalkRay *ray = (const GridwalkRay *)rays->data + i;
+        const GridwalkHit *hit[3], *list = (const GridwalkHit *)nearest->data + NEAREST * i;
+        for (int k = 0; k < 3; ++k) hit[k] = (const GridwalkHit *)hits[k]->data + i;
+        const uint32_t *geometry = (const uint32_t *)geometries->data + 2 * i, found = ((const uint32_t *)counts->data)[i];
+        Bounds bounds = {HUGE_VAL, HUGE_VAL, 0, 0};
+        brute_force(&flat[i % 2], ray, &bounds);
+        if (hit[0]->t < bounds.possible - 1e-4 || hit[0]->t > bounds.sure + 1e-4) differs("distance of records", i, hit[0]->t, &bounds);
+        uint32_t triangle = hit[0]->triangle;
+        int of = triangle >= first[2] ? 2 : triangle >= first[1];
+        if (triangle == GRIDWALK_MISS ? geometry[0] != UINT32_MAX || geometry[1] != UINT32_MAX
+                                      : !consistent(&flat[i % 2], ray, hit[0]) || geometry[0] != ids[of] || geometry[1] != triangle - first[of])
+            differs("geometry", i, geometry[0], &bounds);
+        if (hit[0]->t != (hit[1]->t < hit[2]->t ? hit[1]->t : hit[2]->t)) differs("culled sides", i, hit[1]->t, &bounds);
+        if (found < bounds.fewest || found > bounds.most) differs("count of hits", i, found, &bounds);
+        if (list[0].triangle != triangle || list[0].t != hit[0]->t) differs("nearest hit", i, list[0].t, &bounds);
+        for (uint32_t k = 0; k < NEAREST; ++k)
+            if ((list[k].triangle == GRIDWALK_MISS) != (k >= found) || (k > 0 && list[k].t < list[k - 1].t))
+                differs("list of hits", i, list[k].t, &bounds);
+    }
+}
+
 int main(int argc, char **argv) {
     if (argc > 1 && !strcmp(argv[1], "--wrong")) shift = 0.01;
     if (gridwalk_version() != VK_MAKE_API_VERSION(0, GRIDWALK_VERSION_MAJOR, GRIDWALK_VERSION_MINOR, GRIDWALK_VERSION_PATCH))
@@ -580,24 +759,8 @@ int main(int argc, char **argv) {
     }
 
     /* One command buffer, recorded once and submitted twice. */
-    VkCommandPoolCreateInfo pool_info;
-    ZERO(pool_info);
-    pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    pool_info.queueFamilyIndex = queue_family;
-    VkCommandPool pool;
-    check_vk(vkCreateCommandPool_(device, &pool_info, NULL, &pool), "vkCreateCommandPool");
-    VkCommandBufferAllocateInfo allocate;
-    ZERO(allocate);
-    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    allocate.commandPool = pool;
-    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocate.commandBufferCount = 1;
-    VkCommandBuffer cmd;
-    check_vk(vkAllocateCommandBuffers_(device, &allocate, &cmd), "vkAllocateCommandBuffers");
-    VkCommandBufferBeginInfo begin;
-    ZERO(begin);
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-    check_vk(vkBeginCommandBuffer_(cmd, &begin), "vkBeginCommandBuffer");
+    make_commands();
+    VkCommandBuffer cmd = begin_commands();
 
     GridwalkBuildInfo builds[2] = {build_info(&torus, grids[0], scratch, reports[0], capacity),
                                    build_info(&ground, grids[1], scratch, reports[1], capacity)};
@@ -611,9 +774,7 @@ int main(int argc, char **argv) {
     /* What the host wrote is visible to what is submitted later. The scratch is used by one build after another. */
     for (int i = 0; i < 2; ++i) {
         check(gridwalk_cmd_build(tracer, cmd, &builds[i]), "gridwalk_cmd_build");
-        check(gridwalk_cmd_barrier(tracer, cmd, GRIDWALK_BUILD_STAGES, GRIDWALK_BUILD_ACCESS,
-                                   GRIDWALK_BUILD_STAGES | GRIDWALK_TRACE_STAGES, GRIDWALK_BUILD_ACCESS | GRIDWALK_TRACE_ACCESS),
-              "gridwalk_cmd_barrier");
+        barrier(tracer, cmd);
     }
     /* The torus alone with counters, then the torus and, going on from its hits, the floor; then whether the torus is hit at all. */
     GridwalkTraceInfo traces[4] = {closest, trace_info(rays, both, trace_scratch, RAYS), trace_info(rays, both, trace_scratch, RAYS),
@@ -625,26 +786,15 @@ int main(int argc, char **argv) {
         VkDeviceAddress grid = grids[i == 2]->region.address;
         check(i == 3 ? gridwalk_cmd_any_hit(tracer, cmd, grid, &traces[i]) : gridwalk_cmd_closest_hit(tracer, cmd, grid, &traces[i]),
               "gridwalk_cmd_closest_hit, gridwalk_cmd_any_hit");
-        check(gridwalk_cmd_barrier(tracer, cmd, GRIDWALK_TRACE_STAGES, GRIDWALK_TRACE_ACCESS,
-                                   GRIDWALK_TRACE_STAGES | GRIDWALK_BUILD_STAGES | GRIDWALK_HOST_READ_STAGES,
-                                   GRIDWALK_TRACE_ACCESS | GRIDWALK_BUILD_ACCESS | GRIDWALK_HOST_READ_ACCESS),
-              "gridwalk_cmd_barrier");
+        barrier(tracer, cmd);
     }
     check_vk(vkEndCommandBuffer_(cmd), "vkEndCommandBuffer");
 
     double hit_count = 0;
     for (int frame = 0; frame < 2; ++frame) {
-        place_torus((float *)torus.positions->data, (float)frame);
+        place_torus(torus.corners, (float)frame);
         memset(any->data, 0xAB, RAYS * 4);
-        VkSubmitInfo submit;
-        ZERO(submit);
-        submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-        submit.commandBufferCount = 1;
-        submit.pCommandBuffers = &cmd;
-        VkFence no_fence;
-        ZERO(no_fence);
-        check_vk(vkQueueSubmit_(queue, 1, &submit, no_fence), "vkQueueSubmit");
-        check_vk(vkQueueWaitIdle_(queue), "vkQueueWaitIdle");
+        submit_and_wait(cmd);
 
         same_report((const GridwalkReport *)reports[0]->data, TRIANGLES, 0);
         same_report((const GridwalkReport *)reports[1]->data, 4, 2);
@@ -655,7 +805,7 @@ int main(int argc, char **argv) {
             const GridwalkRay *ray = (const GridwalkRay *)rays->data + i;
             const GridwalkHit *alone = (const GridwalkHit *)hits->data + i, *nearest = (const GridwalkHit *)both->data + i;
             const uint32_t hit = ((const uint32_t *)any->data)[i];
-            Bounds bounds = {HUGE_VAL, HUGE_VAL};
+            Bounds bounds = {HUGE_VAL, HUGE_VAL, 0, 0};
             brute_force(&torus, ray, &bounds);
             hit_count += alone->triangle < TRIANGLES;
             if (alone->t < bounds.possible - 1e-4 || alone->t > bounds.sure + 1e-4) differs("distance", i, alone->t, &bounds);
@@ -669,6 +819,7 @@ int main(int argc, char **argv) {
             if (nearest->t < bounds.possible - 1e-4 || nearest->t > bounds.sure + 1e-4) differs("distance over both", i, nearest->t, &bounds);
         }
     }
+    trace_records(tracer, &torus, &ground, rays);
     if (hit_count < RAYS / 2 || hit_count > 2 * RAYS - RAYS / 2) fail("some rays hit and some miss");
     if (timestamp_bits) {
         uint64_t times[MAX_STEPS];
@@ -678,7 +829,7 @@ int main(int argc, char **argv) {
 
     gridwalk_tracer_destroy(tracer);
     vkDestroyQueryPool_(device, queries, NULL);
-    vkDestroyCommandPool_(device, pool, NULL);
+    vkDestroyCommandPool_(device, command_pool, NULL);
     vkDestroyPipelineCache_(device, cache, NULL);
     for (int i = 0; i < memory_count; ++i) {
         vkDestroyBuffer_(device, memories[i].region.buffer, NULL);

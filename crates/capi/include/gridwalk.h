@@ -24,8 +24,11 @@
  * scratch of a trace. Regions do not overlap; they may lie in one buffer. Their contents need no initialization. Buffers and their memory
  * live until the command buffer has been executed.
  *
- * GEOMETRY. Positions are tightly packed float triples, indices tightly packed uint32_t triples. A triangle with a vertex that is not
- * finite, or with an index beyond the positions, is dropped and counted in the report. Neither buffer is read after the build.
+ * GEOMETRY. The simple case is one mesh: positions are tightly packed float triples, indices tightly packed uint32_t triples. Otherwise a
+ * region of GridwalkGeometryRecords, which the host or a shader writes, describes any number of geometries and instances, with formats,
+ * strides, transforms, masks, and numbers of triangles that lie in device memory. A triangle with a vertex that is not finite, or with an
+ * index beyond the positions, is dropped and counted in the report. Nothing of it is read after the build. What a record's addresses
+ * lead to lives until the command buffer has been executed.
  *
  * BARRIERS. You put a memory barrier (gridwalk_cmd_barrier, or one of your own with these masks)
  *   - before a build: from whatever wrote the geometry, and from the trace of the grid's last use, to the build;
@@ -125,6 +128,16 @@
 #define GRIDWALK_MAX_RAYS 268435456u
 
 /**
+ * Most geometry records of a grid.
+ */
+#define GRIDWALK_MAX_GEOMETRIES 65536u
+
+/**
+ * Most hits a ray that `gridwalk_cmd_nearest_hits` finds at once.
+ */
+#define GRIDWALK_MAX_NEAREST 64u
+
+/**
  * Density that is used if none is given: cells a triangle.
  */
 #define GRIDWALK_DEFAULT_DENSITY 8.0
@@ -138,6 +151,61 @@
  * `GridwalkBuildInfo::overlap`: a cell lists the triangles whose boxes it overlaps. The faster build, by less than a tenth.
  */
 #define GRIDWALK_OVERLAP_BOX 1u
+
+/**
+ * `GridwalkTraceInfo::cull`: both sides of triangles are hit.
+ */
+#define GRIDWALK_CULL_NONE 0u
+
+/**
+ * `GridwalkTraceInfo::cull`: only fronts are hit: where the vertices go round counterclockwise, seen along the ray.
+ */
+#define GRIDWALK_CULL_BACK 1u
+
+/**
+ * `GridwalkTraceInfo::cull`: only backs are hit.
+ */
+#define GRIDWALK_CULL_FRONT 2u
+
+/**
+ * `GridwalkGeometryRecord::format`: three floats a vertex.
+ */
+#define GRIDWALK_FORMAT_FLOAT32X3 0u
+
+/**
+ * `GridwalkGeometryRecord::format`: four half floats a vertex, the fourth unused.
+ */
+#define GRIDWALK_FORMAT_FLOAT16X4 1u
+
+/**
+ * `GridwalkGeometryRecord::format`: four normalized `int16_t` a vertex, the fourth unused.
+ */
+#define GRIDWALK_FORMAT_SNORM16X4 2u
+
+/**
+ * `GridwalkGeometryRecord::index_type`: triangle i has the vertices 3 i, 3 i + 1 and 3 i + 2.
+ */
+#define GRIDWALK_INDEX_NONE 0u
+
+/**
+ * `GridwalkGeometryRecord::index_type`: three `uint16_t` a triangle, tightly packed.
+ */
+#define GRIDWALK_INDEX_UINT16 1u
+
+/**
+ * `GridwalkGeometryRecord::index_type`: three `uint32_t` a triangle, tightly packed.
+ */
+#define GRIDWALK_INDEX_UINT32 2u
+
+/**
+ * `GridwalkGeometryRecord::flags`: front and back are exchanged, as by a transform that mirrors.
+ */
+#define GRIDWALK_FLAG_FLIP_FACING 1u
+
+/**
+ * `GridwalkGeometryRecord::flags`: the geometry is never culled.
+ */
+#define GRIDWALK_FLAG_TWO_SIDED 2u
 
 /**
  * `GridwalkReport::overflow`: pairs were dropped; `GridwalkReport::pair_total` is the capacity that would have sufficed.
@@ -344,6 +412,72 @@ typedef struct GridwalkBuildSizes {
 } GridwalkBuildSizes;
 
 /**
+ * One geometry of several in a grid, in device memory: written by the host (`gridwalk_geometry_record_init`) or by a shader of yours. An
+ * instance is a record that shares its addresses with others. 128 bytes, no padding, frozen.
+ *
+ * A vertex is the stored position, times `scale`, plus `offset`, then transformed. Addresses of positions and of 32-bit indices, and the
+ * stride, are multiples of 4; those of 16-bit indices of 2, and the word of 4 bytes that holds the last of them is read whole.
+ */
+typedef struct GridwalkGeometryRecord {
+    /**
+     * Three rows of four: the last column is the translation, as in `VkTransformMatrixKHR`.
+     */
+    float transform[3][4];
+    /**
+     * Multiplied to a stored position before the transform.
+     */
+    float scale[3];
+    /**
+     * Bytes from a vertex to the next, a multiple of 4.
+     */
+    uint32_t stride;
+    /**
+     * Added to a scaled position before the transform.
+     */
+    float offset[3];
+    /**
+     * Vertices; a triangle with an index beyond is dropped and counted.
+     */
+    uint32_t vertex_count;
+    /**
+     * Device address of the first vertex's position.
+     */
+    VkDeviceAddress positions;
+    /**
+     * Device address of the first index; not read with `GRIDWALK_INDEX_NONE`.
+     */
+    VkDeviceAddress indices;
+    /**
+     * Device address of a `uint32_t`, a multiple of 4: the number of triangles, if it is less than `triangle_count`. 0: that is the number.
+     */
+    VkDeviceAddress count;
+    /**
+     * Triangles, or their bound.
+     */
+    uint32_t triangle_count;
+    /**
+     * `GRIDWALK_FORMAT_...`.
+     */
+    uint32_t format;
+    /**
+     * `GRIDWALK_INDEX_...`.
+     */
+    uint32_t index_type;
+    /**
+     * Any number, which a trace gives back for a hit.
+     */
+    uint32_t id;
+    /**
+     * A ray with a mask hits the geometry only if the two share a bit.
+     */
+    uint32_t mask;
+    /**
+     * 0, or bits `GRIDWALK_FLAG_...`.
+     */
+    uint32_t flags;
+} GridwalkGeometryRecord;
+
+/**
  * A piece of a buffer of yours.
  */
 typedef struct GridwalkRegion {
@@ -400,9 +534,18 @@ typedef struct GridwalkBuildInfo {
      */
     uint32_t overlap;
     /**
-     * What is built.
+     * What is built: one mesh. Zeros if `records` are given.
      */
     struct GridwalkGeometry geometry;
+    /**
+     * What is built: `GridwalkGeometryRecord`s, the address a multiple of 16. Address 0: the mesh above. Their triangles are numbered one
+     * record after another; those beyond the capacity are left out and reported.
+     */
+    struct GridwalkRegion records;
+    /**
+     * Records, at most `GRIDWALK_MAX_GEOMETRIES` and at most the capacity of triangles. A record without a triangle is allowed.
+     */
+    uint32_t record_count;
     /**
      * Where the grid goes. Its address names the grid when tracing.
      */
@@ -438,7 +581,7 @@ typedef struct GridwalkBuildInfo {
 } GridwalkBuildInfo;
 
 /**
- * A trace of rays through a grid.
+ * A trace of rays through a grid. What is not for a query is zero.
  */
 typedef struct GridwalkTraceInfo {
     /**
@@ -454,7 +597,8 @@ typedef struct GridwalkTraceInfo {
      */
     struct GridwalkRegion rays;
     /**
-     * Closest hit: `GridwalkHit`s, the address a multiple of 16. Any hit: a `uint32_t` a ray: 1, 0 or `GRIDWALK_UNFINISHED`.
+     * Closest and nearest hits: `GridwalkHit`s, the address a multiple of 16. Any hit: a `uint32_t` a ray: 1, 0 or `GRIDWALK_UNFINISHED`.
+     * Count of hits: a `uint32_t` a ray, or `GRIDWALK_UNFINISHED`.
      */
     struct GridwalkRegion hits;
     /**
@@ -471,8 +615,26 @@ typedef struct GridwalkTraceInfo {
      */
     struct GridwalkRegion counters;
     /**
-     * Closest hit only: `VK_TRUE` to go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are
-     * traced one after another.
+     * A `uint32_t` a ray: a mask of its own, of which only the bits of `mask` count; address 0: `mask` alone.
+     */
+    struct GridwalkRegion masks;
+    /**
+     * Closest hit only: where the geometry of each hit is written, two `uint32_t` a ray: the id of its record, and the triangle's number
+     * within it; of a ray that hits nothing twice 0xFFFFFFFF. Left as it is where `resume` leaves the hit. Address 0: nowhere.
+     */
+    struct GridwalkRegion geometries;
+    /**
+     * Mask of all rays: a geometry is hit only if its mask shares a bit with it. 0: 0xFFFFFFFF, which is also the mask of a mesh without
+     * a record.
+     */
+    uint32_t mask;
+    /**
+     * Triangles that are not hit because of the side that the ray sees: `GRIDWALK_CULL_...`.
+     */
+    uint32_t cull;
+    /**
+     * Closest hit: `VK_TRUE` to go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are
+     * traced one after another. Nearest hits: `VK_TRUE` for those beyond the last hit that lies there. So all hits are had in portions.
      */
     VkBool32 resume;
 } GridwalkTraceInfo;
@@ -681,6 +843,14 @@ GridwalkResult gridwalk_build_step_name(const struct GridwalkTracer *tracer,
                                         size_t name_size);
 
 /**
+ * Sets a geometry record to one without triangles: tightly packed float positions, 32-bit indices, nothing transformed, hit by every mask.
+ *
+ * # Safety
+ * `record` can be written.
+ */
+GridwalkResult gridwalk_geometry_record_init(struct GridwalkGeometryRecord *record);
+
+/**
  * Records a global memory barrier with `vkCmdPipelineBarrier2`: a convenience.
  *
  * # Safety
@@ -727,6 +897,31 @@ GridwalkResult gridwalk_cmd_any_hit(const struct GridwalkTracer *tracer,
                                     VkCommandBuffer command_buffer,
                                     VkDeviceAddress grid,
                                     const struct GridwalkTraceInfo *info);
+
+/**
+ * Records a count of the triangles that each ray hits in its interval, in the grid at `grid`.
+ *
+ * # Safety
+ * As for `gridwalk_cmd_closest_hit`.
+ */
+GridwalkResult gridwalk_cmd_count_hits(const struct GridwalkTracer *tracer,
+                                       VkCommandBuffer command_buffer,
+                                       VkDeviceAddress grid,
+                                       const struct GridwalkTraceInfo *info);
+
+/**
+ * Records a search for the `nearest` nearest hits of each ray in the grid at `grid`, at most `GRIDWALK_MAX_NEAREST`: as many `GridwalkHit`s a
+ * ray one after another, in order of distance and of equal ones in order of triangle, then misses. Where a walk was given up, the rest is
+ * `GRIDWALK_UNFINISHED`. Rays times `nearest` is at most `GRIDWALK_MAX_RAYS`.
+ *
+ * # Safety
+ * As for `gridwalk_cmd_closest_hit`; and with `resume` the hits are of this grid and of these rays.
+ */
+GridwalkResult gridwalk_cmd_nearest_hits(const struct GridwalkTracer *tracer,
+                                         VkCommandBuffer command_buffer,
+                                         VkDeviceAddress grid,
+                                         const struct GridwalkTraceInfo *info,
+                                         uint32_t nearest);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -9,17 +9,18 @@ use gridwalk::ash::vk::{
     Instance as VkInstance, PhysicalDevice as VkPhysicalDevice, PipelineStageFlags2 as VkPipelineStageFlags2, Result as VkResult,
 };
 use gridwalk::{
-    Access, BuildInfo, BuildOptions, Capacity, DeviceDesc, GRIDWALK_GLSL, Geometry, Overlap, RayCount, Region, RegionSize, Timestamps,
-    TraceInfo, Tracer, cmd_barrier, requirements,
+    Access, BuildInfo, BuildOptions, Capacity, Cull, DeviceDesc, GRIDWALK_GLSL, Geometry, GeometryRecord, Input, Overlap, RayCount,
+    Records, Region, RegionSize, Timestamps, TraceInfo, Tracer, cmd_barrier, requirements,
 };
 
 use crate::error::{self, Failure, Result, Text, guard};
 use crate::input::{read_growing, reference, write};
 use crate::load;
 use crate::types::{
-    GRIDWALK_OVERLAP_BOX, GRIDWALK_OVERLAP_EXACT, GRIDWALK_VERSION_MAJOR, GRIDWALK_VERSION_MINOR, GRIDWALK_VERSION_PATCH,
-    GridwalkBuildInfo, GridwalkBuildSizes, GridwalkCapacity, GridwalkDeviceDesc, GridwalkRegion, GridwalkRegionSize, GridwalkResult,
-    GridwalkTraceInfo, GridwalkTracer, PFN_vkGetInstanceProcAddr,
+    GRIDWALK_CULL_BACK, GRIDWALK_CULL_FRONT, GRIDWALK_CULL_NONE, GRIDWALK_OVERLAP_BOX, GRIDWALK_OVERLAP_EXACT, GRIDWALK_VERSION_MAJOR,
+    GRIDWALK_VERSION_MINOR, GRIDWALK_VERSION_PATCH, GridwalkBuildInfo, GridwalkBuildSizes, GridwalkCapacity, GridwalkDeviceDesc,
+    GridwalkGeometryRecord, GridwalkRegion, GridwalkRegionSize, GridwalkResult, GridwalkTraceInfo, GridwalkTracer,
+    PFN_vkGetInstanceProcAddr,
 };
 
 /// Version of the library, as `VK_MAKE_API_VERSION(0, major, minor, patch)`.
@@ -271,6 +272,16 @@ pub unsafe extern "C" fn gridwalk_build_step_name(
     })
 }
 
+/// Sets a geometry record to one without triangles: tightly packed float positions, 32-bit indices, nothing transformed, hit by every mask.
+///
+/// # Safety
+/// `record` can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridwalk_geometry_record_init(record: *mut GridwalkGeometryRecord) -> GridwalkResult {
+    // SAFETY: the caller's contract; the two types have one layout, asserted where ours is defined.
+    guard(|| unsafe { write(record.cast::<GeometryRecord>(), "record", GeometryRecord::default()) })
+}
+
 /// Records a global memory barrier with `vkCmdPipelineBarrier2`: a convenience.
 ///
 /// # Safety
@@ -311,18 +322,12 @@ pub unsafe extern "C" fn gridwalk_cmd_build(
     guard(|| {
         // SAFETY: the caller's contract.
         let (tracer, info) = unsafe { (recorder(tracer, command_buffer)?, read_growing(info)?) };
-        let geometry = Geometry {
-            positions: region("positions", &info.geometry.positions)?,
-            vertex_count: info.geometry.vertex_count,
-            indices: region("indices", &info.geometry.indices)?,
-            triangle_count: info.geometry.triangle_count,
-        };
         let (grid, scratch, report) = (region("grid", &info.grid)?, region("scratch", &info.scratch)?, region("report", &info.report)?);
         let build = BuildInfo {
             options: build_options(&info)?,
             timestamps: (info.timestamp_pool != vk::QueryPool::null())
                 .then_some(Timestamps { pool: info.timestamp_pool, first_query: info.first_query }),
-            ..BuildInfo::new(geometry, grid, scratch, report, (&info.capacity).into())
+            ..BuildInfo::new(input(&info)?, grid, scratch, report, (&info.capacity).into())
         };
         // SAFETY: the caller's contract.
         unsafe { tracer.cmd_build(command_buffer, &build)? };
@@ -370,6 +375,49 @@ pub unsafe extern "C" fn gridwalk_cmd_any_hit(
     })
 }
 
+/// Records a count of the triangles that each ray hits in its interval, in the grid at `grid`.
+///
+/// # Safety
+/// As for `gridwalk_cmd_closest_hit`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridwalk_cmd_count_hits(
+    tracer: *const GridwalkTracer,
+    command_buffer: VkCommandBuffer,
+    grid: VkDeviceAddress,
+    info: *const GridwalkTraceInfo,
+) -> GridwalkResult {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe {
+            let (tracer, info) = (recorder(tracer, command_buffer)?, read_growing(info)?);
+            Ok(tracer.cmd_count_hits(command_buffer, grid, &trace_info(&info)?)?)
+        }
+    })
+}
+
+/// Records a search for the `nearest` nearest hits of each ray in the grid at `grid`, at most `GRIDWALK_MAX_NEAREST`: as many `GridwalkHit`s a
+/// ray one after another, in order of distance and of equal ones in order of triangle, then misses. Where a walk was given up, the rest is
+/// `GRIDWALK_UNFINISHED`. Rays times `nearest` is at most `GRIDWALK_MAX_RAYS`.
+///
+/// # Safety
+/// As for `gridwalk_cmd_closest_hit`; and with `resume` the hits are of this grid and of these rays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridwalk_cmd_nearest_hits(
+    tracer: *const GridwalkTracer,
+    command_buffer: VkCommandBuffer,
+    grid: VkDeviceAddress,
+    info: *const GridwalkTraceInfo,
+    nearest: u32,
+) -> GridwalkResult {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe {
+            let (tracer, info) = (recorder(tracer, command_buffer)?, read_growing(info)?);
+            Ok(tracer.cmd_nearest_hits(command_buffer, grid, &trace_info(&info)?, nearest)?)
+        }
+    })
+}
+
 /// # Safety
 /// The tracer is null or alive.
 unsafe fn recorder<'a>(tracer: *const GridwalkTracer, command_buffer: VkCommandBuffer) -> Result<&'a Tracer> {
@@ -379,6 +427,22 @@ unsafe fn recorder<'a>(tracer: *const GridwalkTracer, command_buffer: VkCommandB
         return Err(Failure::Null("command_buffer"));
     }
     Ok(&tracer.tracer)
+}
+
+fn input(info: &GridwalkBuildInfo) -> Result<Input> {
+    let mesh = &info.geometry;
+    if info.records.address == 0 && info.record_count == 0 {
+        return Ok(Input::Mesh(Geometry {
+            positions: region("positions", &mesh.positions)?,
+            vertex_count: mesh.vertex_count,
+            indices: region("indices", &mesh.indices)?,
+            triangle_count: mesh.triangle_count,
+        }));
+    }
+    if mesh.triangle_count != 0 {
+        return Err(Failure::Option(format!("geometry.triangle_count = {}: 0 where records are given", mesh.triangle_count)));
+    }
+    Ok(Input::Records(Records { records: region("records", &info.records)?, count: info.record_count }))
 }
 
 fn build_options(info: &GridwalkBuildInfo) -> Result<BuildOptions> {
@@ -398,12 +462,25 @@ fn trace_info(info: &GridwalkTraceInfo) -> Result<TraceInfo> {
         0 => RayCount::Direct(info.ray_count),
         _ => RayCount::Indirect { count: region("ray count", &info.indirect_count)?, max: info.ray_count },
     };
-    let counters = match info.counters.address {
-        0 => None,
-        _ => Some(region("counters", &info.counters)?),
+    let optional = |name, given: &GridwalkRegion| match given.address {
+        0 => Ok(None),
+        _ => region(name, given).map(Some),
     };
     let (rays, hits, scratch) = (region("rays", &info.rays)?, region("hits", &info.hits)?, region("trace scratch", &info.scratch)?);
-    Ok(TraceInfo { resume: info.resume != vk::FALSE, counters, ..TraceInfo::new(rays, hits, count, scratch) })
+    Ok(TraceInfo {
+        resume: info.resume != vk::FALSE,
+        counters: optional("counters", &info.counters)?,
+        mask: if info.mask == 0 { u32::MAX } else { info.mask },
+        masks: optional("masks", &info.masks)?,
+        cull: match info.cull {
+            GRIDWALK_CULL_NONE => Cull::None,
+            GRIDWALK_CULL_BACK => Cull::Back,
+            GRIDWALK_CULL_FRONT => Cull::Front,
+            other => return Err(Failure::Option(format!("cull = {other}: 0 (none), 1 (back) or 2 (front)"))),
+        },
+        geometries: optional("geometries", &info.geometries)?,
+        ..TraceInfo::new(rays, hits, count, scratch)
+    })
 }
 
 /// The library reckons with offsets and addresses inside of a region.

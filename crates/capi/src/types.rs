@@ -31,6 +31,10 @@ pub const GRIDWALK_MAX_CELLS: u32 = 268435456u32;
 pub const GRIDWALK_MAX_PAIRS: u32 = 268435456u32;
 /// Most rays of a trace.
 pub const GRIDWALK_MAX_RAYS: u32 = 268435456u32;
+/// Most geometry records of a grid.
+pub const GRIDWALK_MAX_GEOMETRIES: u32 = 65536u32;
+/// Most hits a ray that `gridwalk_cmd_nearest_hits` finds at once.
+pub const GRIDWALK_MAX_NEAREST: u32 = 64u32;
 /// Density that is used if none is given: cells a triangle.
 pub const GRIDWALK_DEFAULT_DENSITY: f32 = 8.0;
 
@@ -38,6 +42,30 @@ pub const GRIDWALK_DEFAULT_DENSITY: f32 = 8.0;
 pub const GRIDWALK_OVERLAP_EXACT: u32 = 0u32;
 /// `GridwalkBuildInfo::overlap`: a cell lists the triangles whose boxes it overlaps. The faster build, by less than a tenth.
 pub const GRIDWALK_OVERLAP_BOX: u32 = 1u32;
+
+/// `GridwalkTraceInfo::cull`: both sides of triangles are hit.
+pub const GRIDWALK_CULL_NONE: u32 = 0u32;
+/// `GridwalkTraceInfo::cull`: only fronts are hit: where the vertices go round counterclockwise, seen along the ray.
+pub const GRIDWALK_CULL_BACK: u32 = 1u32;
+/// `GridwalkTraceInfo::cull`: only backs are hit.
+pub const GRIDWALK_CULL_FRONT: u32 = 2u32;
+
+/// `GridwalkGeometryRecord::format`: three floats a vertex.
+pub const GRIDWALK_FORMAT_FLOAT32X3: u32 = 0u32;
+/// `GridwalkGeometryRecord::format`: four half floats a vertex, the fourth unused.
+pub const GRIDWALK_FORMAT_FLOAT16X4: u32 = 1u32;
+/// `GridwalkGeometryRecord::format`: four normalized `int16_t` a vertex, the fourth unused.
+pub const GRIDWALK_FORMAT_SNORM16X4: u32 = 2u32;
+/// `GridwalkGeometryRecord::index_type`: triangle i has the vertices 3 i, 3 i + 1 and 3 i + 2.
+pub const GRIDWALK_INDEX_NONE: u32 = 0u32;
+/// `GridwalkGeometryRecord::index_type`: three `uint16_t` a triangle, tightly packed.
+pub const GRIDWALK_INDEX_UINT16: u32 = 1u32;
+/// `GridwalkGeometryRecord::index_type`: three `uint32_t` a triangle, tightly packed.
+pub const GRIDWALK_INDEX_UINT32: u32 = 2u32;
+/// `GridwalkGeometryRecord::flags`: front and back are exchanged, as by a transform that mirrors.
+pub const GRIDWALK_FLAG_FLIP_FACING: u32 = 1u32;
+/// `GridwalkGeometryRecord::flags`: the geometry is never culled.
+pub const GRIDWALK_FLAG_TWO_SIDED: u32 = 2u32;
 
 /// `GridwalkReport::overflow`: pairs were dropped; `GridwalkReport::pair_total` is the capacity that would have sufficed.
 pub const GRIDWALK_OVERFLOW_PAIRS: u32 = 1u32;
@@ -171,6 +199,44 @@ pub struct GridwalkBuildSizes {
     pub timestamp_count: u32,
 }
 
+/// One geometry of several in a grid, in device memory: written by the host (`gridwalk_geometry_record_init`) or by a shader of yours. An
+/// instance is a record that shares its addresses with others. 128 bytes, no padding, frozen.
+///
+/// A vertex is the stored position, times `scale`, plus `offset`, then transformed. Addresses of positions and of 32-bit indices, and the
+/// stride, are multiples of 4; those of 16-bit indices of 2, and the word of 4 bytes that holds the last of them is read whole.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkGeometryRecord {
+    /// Three rows of four: the last column is the translation, as in `VkTransformMatrixKHR`.
+    pub transform: [[f32; 4]; 3],
+    /// Multiplied to a stored position before the transform.
+    pub scale: [f32; 3],
+    /// Bytes from a vertex to the next, a multiple of 4.
+    pub stride: u32,
+    /// Added to a scaled position before the transform.
+    pub offset: [f32; 3],
+    /// Vertices; a triangle with an index beyond is dropped and counted.
+    pub vertex_count: u32,
+    /// Device address of the first vertex's position.
+    pub positions: VkDeviceAddress,
+    /// Device address of the first index; not read with `GRIDWALK_INDEX_NONE`.
+    pub indices: VkDeviceAddress,
+    /// Device address of a `uint32_t`, a multiple of 4: the number of triangles, if it is less than `triangle_count`. 0: that is the number.
+    pub count: VkDeviceAddress,
+    /// Triangles, or their bound.
+    pub triangle_count: u32,
+    /// `GRIDWALK_FORMAT_...`.
+    pub format: u32,
+    /// `GRIDWALK_INDEX_...`.
+    pub index_type: u32,
+    /// Any number, which a trace gives back for a hit.
+    pub id: u32,
+    /// A ray with a mask hits the geometry only if the two share a bit.
+    pub mask: u32,
+    /// 0, or bits `GRIDWALK_FLAG_...`.
+    pub flags: u32,
+}
+
 /// Indexed triangles in device memory.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -193,8 +259,13 @@ pub struct GridwalkBuildInfo {
     pub struct_size: u32,
     /// `GRIDWALK_OVERLAP_EXACT` (0) or `GRIDWALK_OVERLAP_BOX`.
     pub overlap: u32,
-    /// What is built.
+    /// What is built: one mesh. Zeros if `records` are given.
     pub geometry: GridwalkGeometry,
+    /// What is built: `GridwalkGeometryRecord`s, the address a multiple of 16. Address 0: the mesh above. Their triangles are numbered one
+    /// record after another; those beyond the capacity are left out and reported.
+    pub records: GridwalkRegion,
+    /// Records, at most `GRIDWALK_MAX_GEOMETRIES` and at most the capacity of triangles. A record without a triangle is allowed.
+    pub record_count: u32,
     /// Where the grid goes. Its address names the grid when tracing.
     pub grid: GridwalkRegion,
     /// Memory of the build.
@@ -213,7 +284,7 @@ pub struct GridwalkBuildInfo {
     pub timestamp_pool: VkQueryPool,
 }
 
-/// A trace of rays through a grid.
+/// A trace of rays through a grid. What is not for a query is zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct GridwalkTraceInfo {
@@ -223,7 +294,8 @@ pub struct GridwalkTraceInfo {
     pub ray_count: u32,
     /// `GridwalkRay`s; the address is a multiple of 16.
     pub rays: GridwalkRegion,
-    /// Closest hit: `GridwalkHit`s, the address a multiple of 16. Any hit: a `uint32_t` a ray: 1, 0 or `GRIDWALK_UNFINISHED`.
+    /// Closest and nearest hits: `GridwalkHit`s, the address a multiple of 16. Any hit: a `uint32_t` a ray: 1, 0 or `GRIDWALK_UNFINISHED`.
+    /// Count of hits: a `uint32_t` a ray, or `GRIDWALK_UNFINISHED`.
     pub hits: GridwalkRegion,
     /// Memory of the trace: `gridwalk_trace_scratch_size`.
     pub scratch: GridwalkRegion,
@@ -232,8 +304,18 @@ pub struct GridwalkTraceInfo {
     /// Closest hit only: where each ray's numbers of steps, triangle tests and cells that were not empty are written, as four `uint32_t`;
     /// address 0: nowhere.
     pub counters: GridwalkRegion,
-    /// Closest hit only: `VK_TRUE` to go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are
-    /// traced one after another.
+    /// A `uint32_t` a ray: a mask of its own, of which only the bits of `mask` count; address 0: `mask` alone.
+    pub masks: GridwalkRegion,
+    /// Closest hit only: where the geometry of each hit is written, two `uint32_t` a ray: the id of its record, and the triangle's number
+    /// within it; of a ray that hits nothing twice 0xFFFFFFFF. Left as it is where `resume` leaves the hit. Address 0: nowhere.
+    pub geometries: GridwalkRegion,
+    /// Mask of all rays: a geometry is hit only if its mask shares a bit with it. 0: 0xFFFFFFFF, which is also the mask of a mesh without
+    /// a record.
+    pub mask: u32,
+    /// Triangles that are not hit because of the side that the ray sees: `GRIDWALK_CULL_...`.
+    pub cull: u32,
+    /// Closest hit: `VK_TRUE` to go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are
+    /// traced one after another. Nearest hits: `VK_TRUE` for those beyond the last hit that lies there. So all hits are had in portions.
     pub resume: VkBool32,
 }
 
@@ -309,6 +391,12 @@ const _: () = {
     assert!(GRIDWALK_OVERFLOW_PAIRS == gridwalk::gridwalk_core::layout::OVERFLOW_PAIRS);
     assert!(GRIDWALK_OVERFLOW_CELLS == gridwalk::gridwalk_core::layout::OVERFLOW_CELLS);
     assert!(GRIDWALK_OVERFLOW_TRIANGLES == gridwalk::gridwalk_core::layout::OVERFLOW_TRIANGLES);
+    assert!(GRIDWALK_MAX_GEOMETRIES == gridwalk::MAX_GEOMETRIES && GRIDWALK_MAX_NEAREST == gridwalk::MAX_NEAREST);
+    use gridwalk::gridwalk_core::geometry as core;
+    assert!(GRIDWALK_FORMAT_FLOAT32X3 == core::FORMAT_FLOAT32X3 && GRIDWALK_FORMAT_FLOAT16X4 == core::FORMAT_FLOAT16X4);
+    assert!(GRIDWALK_FORMAT_SNORM16X4 == core::FORMAT_SNORM16X4 && GRIDWALK_INDEX_NONE == core::INDEX_NONE);
+    assert!(GRIDWALK_INDEX_UINT16 == core::INDEX_UINT16 && GRIDWALK_INDEX_UINT32 == core::INDEX_UINT32);
+    assert!(GRIDWALK_FLAG_FLIP_FACING == core::FLAG_FLIP_FACING && GRIDWALK_FLAG_TWO_SIDED == core::FLAG_TWO_SIDED);
     const fn same(access: Access, stages: u64, accesses: u64) -> bool {
         access.stages.as_raw() == stages && access.access.as_raw() == accesses
     }
@@ -340,3 +428,5 @@ same_layout!(GridwalkRay, gridwalk::Ray, origin t_min direction t_max);
 same_layout!(GridwalkHit, gridwalk::Hit, t u v triangle);
 same_layout!(GridwalkReport, gridwalk::Report,
     triangles dropped cells cells_in_use resolution longest_list pairs pair_total overflow key_bits box_min density box_max triangle_total);
+same_layout!(GridwalkGeometryRecord, gridwalk::GeometryRecord,
+    transform scale stride offset vertex_count positions indices count triangle_count format index_type id mask flags);
