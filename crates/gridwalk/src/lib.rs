@@ -54,6 +54,17 @@
 //!
 //! **Destruction.** Drop the tracer after all work recorded with it has ended and before its device is destroyed.
 //!
+//! **Pipelines** are made once, by [`Tracer::new`], all of them through the caller's cache ([`DeviceDesc::pipeline_cache`]); what the cache
+//! began with, and whether it is kept, is the caller's affair. Recording allocates nothing on the heap.
+//!
+//! **Queues.** A recording needs a queue with compute and nothing else: an asynchronous compute queue serves. What another queue family has
+//! written or will read has to be shared (`VK_SHARING_MODE_CONCURRENT`) or handed over by the caller's own barriers; semaphores between queues
+//! are the caller's as well.
+//!
+//! **Elsewhere.** MoltenVK's devices are seen by an instance with `VK_KHR_portability_enumeration` and its flag, and want
+//! `VK_KHR_portability_subset` enabled where they offer it; none of the subset's optional features is needed. The crate compiles for Windows and
+//! macOS and holds nothing of either system, but has been run on neither.
+//!
 //! # Rays and hits
 //!
 //! A [`Ray`]'s direction has any length but zero, `t` counts in its units, and hits lie in the closed interval [`t_min`, `t_max`]. The hit
