@@ -63,7 +63,7 @@ fn packages_hold_what_they_need_and_no_more() {
             assert!(files.contains(file), "{name}: no {file} in the package");
         }
         let made_by_cargo = [".cargo_vcs_info.json", "Cargo.lock", "Cargo.toml", "Cargo.toml.orig"];
-        let folders = ["src/", "spirv/", "glsl/", "include/"];
+        let folders = ["src/", "spirv/", "glsl/", "include/", "docs/"];
         for file in &files {
             let known = folders.iter().any(|folder| file.starts_with(folder))
                 || made_by_cargo.contains(file)
