@@ -17,7 +17,8 @@ use crate::{
     Animation, AnimationOptions, Background, DEFAULT_FPS, Error, Light, LoadOptions, Material, Mesh, Motion, RenderDefaults, Result,
 };
 
-/// Reads a scene: an `.obj` or `.ply` file, packed by gzip or not, or a scene file (`.toml`), or a folder that holds a `scene.toml`.
+/// Reads a scene: an `.obj` or `.ply` file, packed by gzip or not, a `.gltf` or `.glb` file, or a scene file (`.toml`), or a folder that
+/// holds a `scene.toml`.
 ///
 /// A scene without lights gets a key and a fill light and a soft gradient as background; one without cameras is framed automatically
 /// ([`Scene::camera`]).

@@ -5,7 +5,7 @@
 pub struct LoadOptions {
     /// Also open files outside the scene's folder (by absolute paths, `..` or symbolic links).
     pub allow_external_paths: bool,
-    /// Cap for a mesh file in bytes, unpacked.
+    /// Cap for a mesh file in bytes, unpacked, and for what the numbers of a glTF file take in memory.
     pub max_mesh_bytes: u64,
     /// Cap for an MTL file in bytes.
     pub max_material_bytes: u64,

@@ -19,6 +19,9 @@ struct File {
     buffers: Vec<Vec<u8>>,
 }
 
+/// The elements of an accessor.
+type Numbers = Vec<Vec<f64>>;
+
 /// One corner: position and normal in world space.
 type Corner = ([f64; 3], Option<[f64; 3]>);
 
@@ -234,7 +237,7 @@ impl File {
                 let attributes = &primitive["attributes"];
                 let positions = get(&attributes["POSITION"]);
                 let normals = attributes.get("NORMAL").map(&mut get);
-                let targets: Vec<(Option<Vec<Vec<f64>>>, Option<Vec<Vec<f64>>>)> = primitive["targets"]
+                let targets: Vec<(Option<Numbers>, Option<Numbers>)> = primitive["targets"]
                     .as_array()
                     .into_iter()
                     .flatten()
@@ -362,10 +365,9 @@ fn posed(animation: &Animation, mesh: usize, time: f64) -> Vec<Corner> {
         let own = &deformed.influences[at * each..(at + 1) * each];
         assert!(each == 0 || (own.iter().map(|influence| influence.weight).sum::<f32>() - 1.0).abs() < 1e-5);
         for influence in own {
-            for row in 0..3 {
-                for column in 0..4 {
-                    matrix[row][column] += f64::from(pose.matrices[influence.joint as usize][row][column] * influence.weight);
-                }
+            let joint = &pose.matrices[influence.joint as usize];
+            for (sum, value) in matrix.as_flattened_mut().iter_mut().zip(joint.as_flattened()) {
+                *sum += f64::from(value * influence.weight);
             }
         }
         let moved = |row: usize| (0..3).map(|axis| matrix[row][axis] * position[axis]).sum::<f64>() + matrix[row][3];
@@ -523,8 +525,7 @@ fn random_file(random: &mut Random) -> Maker {
     maker.json["skins"] = json!([{ "joints": [2, 3, 1], "inverseBindMatrices": matrices }, { "joints": [0, 4, 3] }]);
 
     let kinds = ["LINEAR", "STEP", "CUBICSPLINE"];
-    let mut next = 0;
-    for (node, path, width) in [
+    let channels = [
         (0, "rotation", 4),
         (0, "translation", 3),
         (2, "rotation", 4),
@@ -533,9 +534,9 @@ fn random_file(random: &mut Random) -> Maker {
         (4, "weights", 2),
         (4, "translation", 3),
         (6, "weights", 2),
-    ] {
+    ];
+    for (next, (node, path, width)) in channels.into_iter().enumerate() {
         let interpolation = kinds[(next + values(1, 0.0, 3.0)[0] as usize) % 3];
-        next += 1;
         let each = if interpolation == "CUBICSPLINE" { 3 } else { 1 };
         let mut times = values(5, 0.0, 2.0);
         times.sort_by(f32::total_cmp);

@@ -488,7 +488,13 @@ fn coordinates_of(set: u32, transform: Option<&TextureTransform>) -> Coordinates
             rotation: transform.rotation.0,
             scale: transform.scale.0,
         },
-        None => Coordinates { set, offset: [0.0; 2], rotation: 0.0, scale: [1.0; 2] },
+        None => Coordinates { set, ..Coordinates::default() },
+    }
+}
+
+impl Default for Coordinates {
+    fn default() -> Self {
+        Self { set: 0, offset: [0.0; 2], rotation: 0.0, scale: [1.0; 2] }
     }
 }
 

@@ -6,6 +6,7 @@ use gltf::json;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 
+use super::affine::{self, Affine};
 use super::document::Document;
 use super::material::Made;
 use crate::vector::{Vector, add, cross, normalised, sub};
@@ -125,12 +126,6 @@ pub(super) fn read(document: &Document, primitive: &Primitive, material: &Made, 
     let (influences, each) = read_influences(document, primitive, count, &fail)?;
     let raw = Shape { positions, normals: normals.unwrap_or_default(), uvs, colours, indices: triangles, targets, influences, each };
     Ok(Some(if raw.normals.is_empty() { flat(document, &raw)? } else { smooth(document, raw)? }))
-}
-
-impl Default for super::material::Coordinates {
-    fn default() -> Self {
-        Self { set: 0, offset: [0.0; 2], rotation: 0.0, scale: [1.0; 2] }
-    }
 }
 
 fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
@@ -300,8 +295,7 @@ fn unit(normal: Vector) -> [f32; 3] {
 }
 
 /// Positions and normals after targets and matrices, and whether the matrices mirror.
-pub(super) fn deformed(shape: &Shape, weights: &[f64], matrices: &[super::affine::Affine]) -> (Vec<[f32; 3]>, Vec<[f32; 3]>, bool) {
-    use super::affine;
+pub(super) fn deformed(shape: &Shape, weights: &[f64], matrices: &[Affine]) -> (Vec<[f32; 3]>, Vec<[f32; 3]>, bool) {
     let bent = |base: &[[f32; 3]], at: usize, part: fn(&MorphTarget) -> &Vec<[f32; 3]>| -> Vector {
         let mut value = base.get(at).copied().unwrap_or_default().map(f64::from);
         for (target, &weight) in shape.targets.iter().zip(weights) {
@@ -315,7 +309,7 @@ pub(super) fn deformed(shape: &Shape, weights: &[f64], matrices: &[super::affine
     let each = shape.each as usize;
     let mut balance = 0.0;
     let mut signs: HashMap<u32, f64> = HashMap::new();
-    let mut sign = |joint: u32, matrix: &affine::Affine| *signs.entry(joint).or_insert_with(|| affine::determinant(matrix).signum());
+    let mut sign = |joint: u32, matrix: &Affine| *signs.entry(joint).or_insert_with(|| affine::determinant(matrix).signum());
     let mut positions = Vec::with_capacity(shape.positions.len());
     let mut normals = Vec::with_capacity(shape.positions.len());
     for at in 0..shape.positions.len() {
