@@ -41,7 +41,7 @@ const AS_BEFORE: u8 = 255;
 /// Every so many pixels are looked at to judge a palette; a prime, so that they are no columns of the picture.
 const SAMPLE: usize = 31;
 
-/// Pixels a second at most: players show frames of one hundredth of a second ten times as long.
+/// Frames a second at most: players show frames of one hundredth of a second ten times as long.
 pub(super) const MAX_RATE: f64 = 50.0;
 
 impl<W: Write> GifEncoder<W> {

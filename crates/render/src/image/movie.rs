@@ -149,7 +149,7 @@ impl MovieWriter {
         let encoder = match desc.format {
             MovieFormat::Apng => Encoder::Apng(Box::new(ApngEncoder::new(out(part), desc.rate, desc.metadata.clone()))),
             MovieFormat::Gif => Encoder::Gif(Box::new(GifEncoder::new(out(part), desc.rate))),
-            // Here the matrix need not be guessed: ffmpeg writes it into the file.
+            // The file does not say by which matrix it was made, so it is the one that players guess.
             MovieFormat::Y4m => Encoder::Y4m(Box::new(Y4mEncoder::new(out(part), desc.rate, desc.chroma, None))),
             MovieFormat::Mp4 | MovieFormat::Mkv | MovieFormat::Webm => Encoder::Ffmpeg(Box::new(Ffmpeg::new(part, desc)?)),
         };
