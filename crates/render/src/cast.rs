@@ -1,9 +1,10 @@
 //! Rays of the caller's own.
 
 use crate::{
-    Buffer, BufferDesc, BufferKind, Context, Grid, Result,
+    Buffer, BufferDesc, BufferKind, Context, Error, Grid, Result,
     pipeline::{Recorder, Timer},
 };
+use bytemuck::AnyBitPattern;
 use gridwalk::{Hit, Ray, RayCount, TraceInfo};
 use std::time::Instant;
 
@@ -19,9 +20,6 @@ impl Context {
         if self.is_cpu() { CPU_RAYS_PER_SUBMISSION } else { RAYS_PER_SUBMISSION }
     }
 }
-
-/// Rays that [`cast`] and [`occluded`] bring to the device at once.
-const RAYS_PER_BATCH: usize = 1 << 22;
 
 /// Rays in device memory, with room for their answers.
 #[derive(Debug)]
@@ -144,30 +142,107 @@ impl RayBatch {
     }
 }
 
-/// The closest hit of every ray.
+/// Rays on their way to the device and answers on their way back, in memory that both the host and the device see: each is copied once, and
+/// crosses a bus once.
+struct Lane {
+    rays: Buffer,
+    answers: Buffer,
+}
+
+impl Lane {
+    fn new(context: &Context, count: usize, answer_size: usize) -> Result<Lane> {
+        let buffer = |name, size: usize, kind| context.buffer(&BufferDesc { name, size: (count * size) as u64, kind, dedicated: false });
+        Ok(Lane {
+            rays: buffer("rays", size_of::<Ray>(), BufferKind::Upload)?,
+            answers: buffer("hits", answer_size, BufferKind::Readback)?,
+        })
+    }
+
+    /// To be called while the device has nothing to do with the lane.
+    fn put(&self, rays: &[Ray]) -> Result<()> {
+        let pointer = seen(&self.rays)?;
+        // SAFETY: the buffer has room for as many rays (no batch is longer than the first, which it was made for), aligned to 64 bytes; the
+        // device does not use the lane, and of the host's threads one at a time does.
+        unsafe { std::ptr::copy_nonoverlapping(rays.as_ptr(), pointer.cast(), rays.len()) };
+        Ok(())
+    }
+
+    /// As [`Lane::put`]; the answers of as many rays are there.
+    fn take<T: AnyBitPattern>(&self, count: usize, answers: &mut Vec<T>) -> Result<()> {
+        let pointer = seen(&self.answers)?;
+        // SAFETY: as in `put`; every bit pattern is a `T`.
+        answers.extend_from_slice(unsafe { std::slice::from_raw_parts(pointer.cast(), count) });
+        Ok(())
+    }
+}
+
+fn seen(buffer: &Buffer) -> Result<*mut u8> {
+    let unseen = || Error::Allocator { name: buffer.name().to_owned(), reason: "the host cannot see the memory".to_owned() };
+    buffer.pointer().ok_or_else(unseen)
+}
+
+/// The answers for all rays, in two lanes: while the device traces the rays of one, the host copies the answers out of the other and the
+/// next rays into it.
+fn trace_in_lanes<T: AnyBitPattern + Send>(grid: &Grid, rays: &[Ray], query: Query) -> Result<Vec<T>> {
+    let context = grid.context();
+    let tracer = grid.tracer()?;
+    let batches: Vec<&[Ray]> = rays.chunks(context.rays_per_submission() as usize).collect();
+    let mut answers = Vec::with_capacity(rays.len());
+    let (Some(first), Some(last)) = (batches.first(), batches.last()) else { return Ok(answers) };
+    let lanes = batches.iter().take(2).map(|_| Lane::new(context, first.len(), size_of::<T>())).collect::<Result<Vec<_>>>()?;
+    // Below 2^32, as the device's rays for a submission are.
+    let size = tracer.trace_scratch_size(first.len() as u32)?.size;
+    let scratch = context.buffer(&BufferDesc { name: "trace scratch", size, kind: BufferKind::Device, dedicated: false })?;
+    let trace = |lane: &Lane, count: usize| {
+        let info = TraceInfo::new(lane.rays.region(), lane.answers.region(), RayCount::Direct(count as u32), scratch.region());
+        context.submit("trace", |cmd| {
+            // SAFETY: the command buffer is recording on the tracer's device; the lane has room for as many rays and answers, and lives until
+            // the submission has been waited for; the grid was built by a submission that was waited for.
+            context.label(cmd, "trace", || unsafe {
+                match query {
+                    Query::Closest => tracer.cmd_closest_hit(cmd, grid.address(), &info),
+                    Query::Any => tracer.cmd_any_hit(cmd, grid.address(), &info),
+                }
+            })?;
+            Ok(())
+        })
+    };
+    lanes[0].put(first)?;
+    for (i, batch) in batches.iter().enumerate() {
+        let lane = &lanes[i % 2];
+        let Some(other) = lanes.get((i + 1) % 2) else {
+            trace(lane, batch.len())?;
+            continue;
+        };
+        let beside = || {
+            if let Some(before) = i.checked_sub(1) {
+                other.take(batches[before].len(), &mut answers)?;
+            }
+            batches.get(i + 1).map_or(Ok(()), |next| other.put(next))
+        };
+        std::thread::scope(|scope| {
+            let copying = scope.spawn(beside);
+            let traced = trace(lane, batch.len());
+            let copied = copying.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            traced.and(copied)
+        })?;
+    }
+    lanes[(batches.len() - 1) % 2].take(last.len(), &mut answers)?;
+    Ok(answers)
+}
+
+/// The closest hit of every ray, in batches of [`Context::rays_per_submission`], between which the device does not wait for copies.
 ///
 /// # Errors
 /// [`crate::Error::OutOfDeviceMemory`]; those of [`Context::submit`].
 pub fn cast(grid: &Grid, rays: &[Ray]) -> Result<Vec<Hit>> {
-    let mut hits = Vec::with_capacity(rays.len());
-    for batch in rays.chunks(RAYS_PER_BATCH) {
-        let mut batch = RayBatch::new(grid.context(), batch)?;
-        batch.closest_hit(grid)?;
-        hits.extend(batch.read_hits()?);
-    }
-    Ok(hits)
+    trace_in_lanes(grid, rays, Query::Closest)
 }
 
-/// Whether each ray hits anything: 1, 0, or [`gridwalk::UNFINISHED`].
+/// Whether each ray hits anything: 1, 0, or [`gridwalk::UNFINISHED`]; otherwise as [`cast`].
 ///
 /// # Errors
 /// As [`cast`].
 pub fn occluded(grid: &Grid, rays: &[Ray]) -> Result<Vec<u32>> {
-    let mut answers = Vec::with_capacity(rays.len());
-    for batch in rays.chunks(RAYS_PER_BATCH) {
-        let mut batch = RayBatch::new(grid.context(), batch)?;
-        batch.any_hit(grid)?;
-        answers.extend(batch.read_occluded()?);
-    }
-    Ok(answers)
+    trace_in_lanes(grid, rays, Query::Any)
 }

@@ -85,7 +85,7 @@ fn a_grid_can_be_built_again_in_its_memory() {
 #[test]
 fn rays_keep_their_places() {
     let (_gpu, grid) = studio().load(&scene(vec![(generate::sphere([0.0; 3], 1.0, 64), matt(0.5))]));
-    let count = context().rays_per_submission() as usize + 12_345;
+    let count = 2 * context().rays_per_submission() as usize + 12_345;
     let mut random = Random::new(5);
     let rays: Vec<Ray> = (0..count)
         .map(|_| Ray { origin: random.point(-2.0, 2.0), t_min: 0.0, direction: random.direction(), t_max: random.range(0.1, 4.0) })
