@@ -25,8 +25,12 @@ fn vertices(@builtin(global_invocation_id) id: vec3u) {
     positions[3u * vertex + 2u] = place.y;
     if (all(id.xy < vec2u(side))) {
         let first = 6u * (id.y * side + id.x);
-        let corners = array(vertex, vertex + side + 1u, vertex + 1u, vertex + 1u, vertex + side + 1u, vertex + side + 2u);
-        for (var i = 0u; i < 6u; i++) { indices[first + i] = corners[i]; }
+        indices[first] = vertex;
+        indices[first + 1u] = vertex + side + 1u;
+        indices[first + 2u] = vertex + 1u;
+        indices[first + 3u] = vertex + 1u;
+        indices[first + 4u] = vertex + side + 1u;
+        indices[first + 5u] = vertex + side + 2u;
     }
 }
 
