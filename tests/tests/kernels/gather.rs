@@ -175,7 +175,7 @@ fn the_most_geometries() {
         let pool = Pool::new(gpu, vec![3; 16]);
         let mut random = Random::new(5);
         let record =
-            |i: u32| GeometryRecord { triangle_count: i % 5, count: if i % 3 == 0 { pool.address() } else { 0 }, ..Default::default() };
+            |i: u32| GeometryRecord { triangle_count: i % 5, count: if i.is_multiple_of(3) { pool.address() } else { 0 }, ..Default::default() };
         let mut records: Vec<_> = (0..MAX_GEOMETRIES).map(record).collect();
         scan(gpu, &pool, &records, 1 << 20, "the most geometries");
         // Their sum does not overflow.
