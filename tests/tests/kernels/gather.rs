@@ -174,8 +174,11 @@ fn the_most_geometries() {
     for gpu in [Gpu::with_shape(Shape::CPU), Gpu::with_shape(Shape::GPU), Gpu::with_shape(TINY)] {
         let pool = Pool::new(gpu, vec![3; 16]);
         let mut random = Random::new(5);
-        let record =
-            |i: u32| GeometryRecord { triangle_count: i % 5, count: if i.is_multiple_of(3) { pool.address() } else { 0 }, ..Default::default() };
+        let record = |i: u32| GeometryRecord {
+            triangle_count: i % 5,
+            count: if i.is_multiple_of(3) { pool.address() } else { 0 },
+            ..Default::default()
+        };
         let mut records: Vec<_> = (0..MAX_GEOMETRIES).map(record).collect();
         scan(gpu, &pool, &records, 1 << 20, "the most geometries");
         // Their sum does not overflow.
