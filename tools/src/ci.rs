@@ -49,8 +49,8 @@ const STEPS: [Step; 13] = [
     Step { name: "clippy-shaders", about: "no warning in the shader tool", run: clippy_shaders },
     Step { name: "spirv-val", about: "every committed SPIR-V module is valid", run: spirv_val },
     Step { name: "api", about: "the library's public interface is as kept in docs/api", run: check_api },
-    Step { name: "package", about: "each crate packs, and builds from its package", run: package },
-    Step { name: "cross", about: "everything compiles for Windows and macOS", run: cross },
+    Step { name: "package", about: "each crate packs", run: package },
+    Step { name: "cross", about: "the program and the libraries compile for Windows and macOS", run: cross },
     Step { name: "matrix", about: "lavapipe's vector widths and thread counts: the tests pass on each", run: matrix },
     Step { name: "pictures", about: "the same: four pictures are equal bit for bit", run: pictures },
     Step { name: "swiftshader", about: "the same tests and pictures pass on SwiftShader, under a current layer", run: swiftshader },
@@ -166,7 +166,8 @@ fn check_api(root: &Root) -> Result<Outcome> {
 }
 
 fn package(root: &Root) -> Result<Outcome> {
-    let mut command = cargo(root, &["package", "--offline", "--allow-dirty"]);
+    // That the library builds from its packages is a test of the suite; building every crate so would take longer than all else here.
+    let mut command = cargo(root, &["package", "--offline", "--allow-dirty", "--no-verify"]);
     // All in crates/ are published, and nothing else: a test sees to it.
     for folder in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
         let manifest = folder?.path().join("Cargo.toml");
@@ -178,16 +179,17 @@ fn package(root: &Root) -> Result<Outcome> {
 }
 
 /// Systems that nothing here can run on: that all compiles is all that is known of them.
-const TARGETS: [&str; 3] = ["x86_64-pc-windows-msvc", "x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
+const TARGETS: [&str; 2] = ["x86_64-pc-windows-msvc", "aarch64-apple-darwin"];
+
+/// What is meant to run there: all else follows from it, or is a tool of this repository.
+const CROSS: [&str; 2] = ["gridwalk-cli", "gridwalk-capi"];
 
 fn cross(root: &Root) -> Result<Outcome> {
     let sysroot = process::output(Command::new("rustc").args(["--print", "sysroot"]))?;
     let libraries = Path::new(String::from_utf8_lossy(&sysroot).trim()).join("lib/rustlib");
     let (here, missing): (Vec<&str>, Vec<&str>) = TARGETS.into_iter().partition(|target| libraries.join(target).join("lib").is_dir());
     for target in here {
-        // wgpu is not ours to check, and has no Vulkan on macOS without further features.
-        let excluded = ["--exclude", "gridwalk-shaders", "--exclude", "gridwalk-example-wgpu"];
-        process::run(cargo(root, &["check", "--workspace", "--target", target]).args(excluded))?;
+        process::run(cargo(root, &["check", "--target", target]).args(CROSS.iter().flat_map(|name| ["--package", name])))?;
     }
     Ok(match missing[..] {
         [] => Outcome::Passed,
