@@ -15,9 +15,9 @@ pub const STEPS_EACH_TURN: u32 = 4;
 pub const TESTS_EACH_TURN: u32 = 20;
 /// Turns of a walk through the public include.
 pub const GRIDWALK_TURNS: u32 = 32_768;
-/// [`Walk::cull`]: triangles are not hit of which the ray sees the back.
+/// Of a walk's `cull`: triangles are not hit of which the ray sees the back.
 pub const CULL_BACK: u32 = 1;
-/// [`Walk::cull`]: triangles are not hit of which the ray sees the front.
+/// Of a walk's `cull`: triangles are not hit of which the ray sees the front.
 pub const CULL_FRONT: u32 = 2;
 /// Added to the distance of a boundary that the ray does not move towards.
 pub const BEYOND: f32 = 3.0e38;
