@@ -33,19 +33,19 @@
 // boundary, and along the others, inside of the block, to where the ray's point lies, never backwards. A block is entered where its
 // predecessor was left, and exits never decrease, so for every s between a block's entry and its exit the point of the ray lies within
 // pad / 2 of it: each hit with s <= exit has been found when the walk leaves a block.
-#ifndef WALK_GLSL
-#define WALK_GLSL
+#ifndef GRIDWALK_WALK_GLSL
+#define GRIDWALK_WALK_GLSL
 
 // A ray brought into the grid's frame, and the watertight ray-triangle test (Woop, Benthin and Wald 2013) there.
-#ifndef INTERSECT_GLSL
-#define INTERSECT_GLSL
+#ifndef GRIDWALK_INTERSECT_GLSL
+#define GRIDWALK_INTERSECT_GLSL
 
 // The grid as data. Everything from the header on lives in the grid's frame: (input coordinate - middle) * scale. The scale is a power of
 // two chosen so that the largest |coordinate| lies in [1, 2): the product is exact, and no threshold below depends on the unit of the scene.
 // The middle is zero but along axes on which the scene lies so far from the origin that the difference is exact (Sterbenz 1974): what
 // counts for the padding is then the scene's size, not its place.
-#ifndef GRID_GLSL
-#define GRID_GLSL
+#ifndef GRIDWALK_GRID_GLSL
+#define GRIDWALK_GRID_GLSL
 
 // Rays and hits as they lie in device memory. Host twins: gridwalk_core::Ray and gridwalk_core::Hit.
 #ifndef GRIDWALK_TYPES_GLSL
@@ -75,33 +75,33 @@ const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
 #endif
 
 // [begin, end) in the references; {0, 0} for an empty cell.
-layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint triangle[]; };
+layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer GridwalkCells { uvec2 range[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint triangle[]; };
 // Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
 // triangle's number in its geometry, the geometry's id, and its mask.
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TriangleWordsIn { uvec4 vertex[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangles { vec4 vertex[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangleWordsIn { uvec4 vertex[]; };
 
-const uint TRIANGLE_DROPPED = 1u << 31;
-const uint TRIANGLE_FLIPPED = 1u << 30; // its front is where its vertices go round clockwise
-const uint TRIANGLE_TWO_SIDED = 1u << 29; // never culled
-const uint TRIANGLE_NUMBER = (1u << 26) - 1u;
+const uint GRIDWALK_TRIANGLE_DROPPED = 1u << 31;
+const uint GRIDWALK_TRIANGLE_FLIPPED = 1u << 30; // its front is where its vertices go round clockwise
+const uint GRIDWALK_TRIANGLE_TWO_SIDED = 1u << 29; // never culled
+const uint GRIDWALK_TRIANGLE_NUMBER = (1u << 26) - 1u;
 
 // A brick is a block of 4^3 cells. Bit x + 4 y + 16 z of the mask (low word first) is set for a cell that is not empty. All bricks closer
 // than `distance`, in the maximum norm, are empty: 0 for a brick that is not.
-struct Brick {
+struct GridwalkBrick {
     uvec2 mask;
     uint distance;
     uint reserved;
 };
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Bricks { Brick brick[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkBricks { GridwalkBrick brick[]; };
 
-const uint BRICK_SIZE = 4u;
+const uint GRIDWALK_BRICK_SIZE = 4u;
 
-uvec3 brick_resolution(uvec3 resolution) { return (resolution + uvec3(BRICK_SIZE - 1u)) / BRICK_SIZE; }
+uvec3 gridwalk_brick_resolution(uvec3 resolution) { return (resolution + uvec3(GRIDWALK_BRICK_SIZE - 1u)) / GRIDWALK_BRICK_SIZE; }
 
 // Host twin: gridwalk_core::layout::GridHeader.
-struct GridHeader {
+struct GridwalkGridHeader {
     vec3 box_min; // padded
     float scale;
     vec3 box_max; // padded
@@ -120,24 +120,24 @@ struct GridHeader {
     uint reserved;
 };
 
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridwalkGridHeader header; };
 
-vec3 to_frame(GridHeader grid, vec3 point) { return (point - grid.middle) * grid.scale; }
+vec3 gridwalk_to_frame(GridwalkGridHeader grid, vec3 point) { return (point - grid.middle) * grid.scale; }
 
 // Lower boundary of cell i, upper boundary of cell i - 1. The one function that both the build and the walk use: the walk is watertight
 // only if they agree bit for bit.
-vec3 boundary(vec3 box_min, vec3 cell_size, vec3 i) {
+vec3 gridwalk_boundary(vec3 box_min, vec3 cell_size, vec3 i) {
     vec3 offset = i * cell_size;
     return box_min + offset;
 }
 
-uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
+uint gridwalk_cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
 
 #endif
 
 // Points origin + s * direction. The direction is the ray's, times a power of two that brings its largest component into [1, 2); a
 // component below 2^-40 of the largest is zero. The origin is where the ray enters the padded box, or a little before, or its own start.
-struct MovedRay {
+struct GridwalkMovedRay {
     vec3 origin;
     vec3 direction;
     float s_min;
@@ -152,35 +152,35 @@ struct MovedRay {
     bool valid;
 };
 
-const float NEGLIGIBLE_COMPONENT = 9.094947017729282e-13; // 2^-40
-const float SLAB_TOLERANCE = 9.5367431640625e-07; // 2^-20, above the rounding of a slab's distance by 2.5 ulp divisions
-const float LEAST_NORMAL = 1.1754943508222875e-38; // 2^-126
+const float GRIDWALK_NEGLIGIBLE_COMPONENT = 9.094947017729282e-13; // 2^-40
+const float GRIDWALK_SLAB_TOLERANCE = 9.5367431640625e-07; // 2^-20, above the rounding of a slab's distance by 2.5 ulp divisions
+const float GRIDWALK_LEAST_NORMAL = 1.1754943508222875e-38; // 2^-126
 
 // 2^e for -126 <= e <= 127.
-float power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
+float gridwalk_power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
 
 // floor(log2(x)) for normal x > 0, clamped so that the power of two and its inverse are normal numbers.
-int clamped_exponent(float x) { return clamp(int((floatBitsToUint(x) >> 23) & 255u) - 127, -126, 126); }
+int gridwalk_clamped_exponent(float x) { return clamp(int((floatBitsToUint(x) >> 23) & 255u) - 127, -126, 126); }
 
-bool is_finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
+bool gridwalk_is_finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
 
-vec3 permute(MovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
+vec3 gridwalk_permute(GridwalkMovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
 
-MovedRay move_ray(Ray ray, GridHeader grid) {
-    MovedRay moved;
+GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
+    GridwalkMovedRay moved;
     vec3 magnitude = abs(ray.direction);
     float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
-    moved.valid = is_finite(ray.origin) && is_finite(ray.direction) && largest > 0.0 && !isnan(ray.t_min) && !isnan(ray.t_max);
+    moved.valid = gridwalk_is_finite(ray.origin) && gridwalk_is_finite(ray.direction) && largest > 0.0 && !isnan(ray.t_min) && !isnan(ray.t_max);
     if (!moved.valid) {
         return moved;
     }
-    int exponent = clamped_exponent(largest);
-    float shrink = power_of_two(-exponent);
-    float grow = power_of_two(exponent);
-    bvec3 zero = lessThan(magnitude, vec3(largest * NEGLIGIBLE_COMPONENT));
+    int exponent = gridwalk_clamped_exponent(largest);
+    float shrink = gridwalk_power_of_two(-exponent);
+    float grow = gridwalk_power_of_two(exponent);
+    bvec3 zero = lessThan(magnitude, vec3(largest * GRIDWALK_NEGLIGIBLE_COMPONENT));
     vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
                           zero.z ? 0.0 : ray.direction.z * shrink);
-    vec3 origin = to_frame(grid, ray.origin);
+    vec3 origin = gridwalk_to_frame(grid, ray.origin);
     moved.t_of_s = vec2(grid.inverse_scale, shrink);
     float first = ray.t_min * grow * grid.scale;
     float last = ray.t_max * grow * grid.scale;
@@ -201,15 +201,15 @@ MovedRay move_ray(Ray ray, GridHeader grid) {
         }
     }
     // From far away both are rounded by more than the padding; what lies behind the origin is never visited.
-    entry -= abs(entry) * SLAB_TOLERANCE;
-    leave += abs(leave) * SLAB_TOLERANCE;
+    entry -= abs(entry) * GRIDWALK_SLAB_TOLERANCE;
+    leave += abs(leave) * GRIDWALK_SLAB_TOLERANCE;
     moved.start = max(entry, first);
     // No >, which a NaN would pass.
     moved.valid = moved.valid && moved.start <= leave && moved.start <= last;
     vec3 travelled = moved.start * direction;
     moved.origin = origin + travelled;
     // A ray that starts 2^127 of the grid's units away is lost.
-    moved.valid = moved.valid && is_finite(moved.origin);
+    moved.valid = moved.valid && gridwalk_is_finite(moved.origin);
     moved.s_min = first - moved.start;
     moved.s_max = last - moved.start;
 
@@ -217,30 +217,30 @@ MovedRay move_ray(Ray ray, GridHeader grid) {
     moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
     moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
     moved.direction = direction;
-    vec3 permuted = permute(moved, direction);
+    vec3 permuted = gridwalk_permute(moved, direction);
     float inverse_z = 1.0 / permuted.z;
     moved.shear = vec3(permuted.x * inverse_z, permuted.y * inverse_z, inverse_z);
     return moved;
 }
 
 // t of a hit at s, inside of the ray's interval in spite of rounding.
-float hit_distance(MovedRay moved, Ray ray, float s) {
+float gridwalk_hit_distance(GridwalkMovedRay moved, Ray ray, float s) {
     float t = (moved.start + s) * moved.t_of_s.x * moved.t_of_s.y;
     return min(max(t, ray.t_min), ray.t_max);
 }
 
 // s of a t, as hit_distance has it.
-float distance_to_s(MovedRay moved, float t) {
+float gridwalk_distance_to_s(GridwalkMovedRay moved, float t) {
     return t / moved.t_of_s.y / moved.t_of_s.x - moved.start;
 }
 
 // Whether the ray's line meets the triangle; s, u and v are set if so. Edge functions of a shared edge differ in sign alone, because
 // each is a difference of two products and nothing is contracted; zero counts as inside, so no ray passes between two neighbours.
 // A triangle seen exactly edge-on is not hit. Both windings are.
-bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, out float u, out float v) {
-    vec3 a = permute(ray, v0 - ray.origin);
-    vec3 b = permute(ray, v1 - ray.origin);
-    vec3 c = permute(ray, v2 - ray.origin);
+bool gridwalk_intersect_triangle(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, out float u, out float v) {
+    vec3 a = gridwalk_permute(ray, v0 - ray.origin);
+    vec3 b = gridwalk_permute(ray, v1 - ray.origin);
+    vec3 c = gridwalk_permute(ray, v2 - ray.origin);
     float ax = a.x - ray.shear.x * a.z;
     float ay = a.y - ray.shear.y * a.z;
     float bx = b.x - ray.shear.x * b.z;
@@ -254,7 +254,7 @@ bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, ou
     bool positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
     float determinant = edge_u + edge_v + edge_w;
     // The inverse of a denormal may be infinite.
-    if ((negative && positive) || abs(determinant) < LEAST_NORMAL) {
+    if ((negative && positive) || abs(determinant) < GRIDWALK_LEAST_NORMAL) {
         return false;
     }
     // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
@@ -263,7 +263,7 @@ bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, ou
     vec3 e2 = c - a;
     vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
-    if (abs(facing) < LEAST_NORMAL) {
+    if (abs(facing) < GRIDWALK_LEAST_NORMAL) {
         return false;
     }
     float along = (normal.x * a.x + normal.y * a.y + normal.z * a.z) / facing;
@@ -276,8 +276,8 @@ bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, ou
 
 #endif
 
-struct Walk {
-    MovedRay ray;
+struct GridwalkWalk {
+    GridwalkMovedRay ray;
     vec3 inverse; // of the direction; 0 where that is 0
     vec3 never; // added to the distances: beyond any where the direction is 0
     bvec3 up; // the direction is positive
@@ -299,24 +299,24 @@ struct Walk {
 const uint GRIDWALK_CULL_BACK = 1u;
 const uint GRIDWALK_CULL_FRONT = 2u;
 
-const float BEYOND = 3.0e38;
+const float GRIDWALK_BEYOND = 3.0e38;
 
-ivec3 select(bvec3 which, ivec3 yes, ivec3 no) {
+ivec3 gridwalk_select(bvec3 which, ivec3 yes, ivec3 no) {
     return ivec3(which.x ? yes.x : no.x, which.y ? yes.y : no.y, which.z ? yes.z : no.z);
 }
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
-void walk_enter(inout Walk walk, GridHeader grid) {
-    ivec3 bricks_along = ivec3(brick_resolution(grid.resolution));
+void gridwalk_walk_enter(inout GridwalkWalk walk, GridwalkGridHeader grid) {
+    ivec3 bricks_along = ivec3(gridwalk_brick_resolution(grid.resolution));
     ivec3 at = walk.cell >> 2;
-    Brick brick = Bricks(grid.bricks).brick[at.x + bricks_along.x * (at.y + bricks_along.y * at.z)];
+    GridwalkBrick brick = GridwalkBricks(grid.bricks).brick[at.x + bricks_along.x * (at.y + bricks_along.y * at.z)];
     ivec3 inner = walk.cell & 3;
     uint bit = uint(inner.x | (inner.y << 2) | ((inner.z & 1) << 4));
     uint word = inner.z < 2 ? brick.mask.x : brick.mask.y;
     walk.reference = 0u;
     walk.list_end = 0u;
     if (((word >> bit) & 1u) != 0u) {
-        uvec2 range = Cells(grid.cells).range[cell_id(uvec3(walk.cell), grid.resolution)];
+        uvec2 range = GridwalkCells(grid.cells).range[gridwalk_cell_id(uvec3(walk.cell), grid.resolution)];
         walk.reference = range.x;
         walk.list_end = range.y;
     }
@@ -324,12 +324,12 @@ void walk_enter(inout Walk walk, GridHeader grid) {
     bool jump = reach != 0;
     walk.low = jump ? max((at - ivec3(reach - 1)) << 2, ivec3(0)) : walk.cell;
     walk.high = jump ? min((at + ivec3(reach)) << 2, ivec3(grid.resolution)) : walk.cell + ivec3(1);
-    vec3 edges = boundary(grid.box_min, grid.cell_size, vec3(select(walk.up, walk.high, walk.low)));
+    vec3 edges = gridwalk_boundary(grid.box_min, grid.cell_size, vec3(gridwalk_select(walk.up, walk.high, walk.low)));
     walk.boundaries = (edges - walk.ray.origin) * walk.inverse + walk.never;
     walk.exit = max(walk.exit, min(walk.boundaries.x, min(walk.boundaries.y, walk.boundaries.z)));
 }
 
-ivec3 walk_cell_at(Walk walk, GridHeader grid, float s) {
+ivec3 gridwalk_walk_cell_at(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
     vec3 travelled = s * walk.ray.direction;
     vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
     // Clamped as floats: a conversion out of range may give anything.
@@ -337,14 +337,14 @@ ivec3 walk_cell_at(Walk walk, GridHeader grid, float s) {
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
-Walk walk_begin(GridHeader grid, MovedRay ray) {
-    Walk walk;
+GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedRay ray) {
+    GridwalkWalk walk;
     walk.ray = ray;
     bvec3 still = equal(ray.direction, vec3(0.0));
     walk.up = greaterThan(ray.direction, vec3(0.0));
     walk.inverse = vec3(still.x ? 0.0 : 1.0 / ray.direction.x, still.y ? 0.0 : 1.0 / ray.direction.y, still.z ? 0.0 : 1.0 / ray.direction.z);
-    walk.never = vec3(still.x ? BEYOND : 0.0, still.y ? BEYOND : 0.0, still.z ? BEYOND : 0.0);
-    walk.cell = walk_cell_at(walk, grid, 0.0);
+    walk.never = vec3(still.x ? GRIDWALK_BEYOND : 0.0, still.y ? GRIDWALK_BEYOND : 0.0, still.z ? GRIDWALK_BEYOND : 0.0);
+    walk.cell = gridwalk_walk_cell_at(walk, grid, 0.0);
     walk.exit = 0.0;
     walk.best_s = ray.s_max;
     walk.best_u = 0.0;
@@ -352,64 +352,64 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
     walk.best_triangle = GRIDWALK_MISS;
     walk.mask = 0xFFFFFFFFu;
     walk.cull = 0u;
-    walk_enter(walk, grid);
+    gridwalk_walk_enter(walk, grid);
     return walk;
 }
 
 // Into the next block; false outside of the grid.
-bool walk_step(inout Walk walk, GridHeader grid) {
+bool gridwalk_walk_step(inout GridwalkWalk walk, GridwalkGridHeader grid) {
     bool x = walk.boundaries.x <= walk.boundaries.y && walk.boundaries.x <= walk.boundaries.z;
     bool y = !x && walk.boundaries.y <= walk.boundaries.z;
     bvec3 along = bvec3(x, y, !x && !y);
     ivec3 last = walk.high - ivec3(1);
-    ivec3 inside = walk_cell_at(walk, grid, walk.exit);
-    inside = min(max(inside, select(walk.up, walk.cell, walk.low)), select(walk.up, last, walk.cell));
-    ivec3 beyond = select(walk.up, walk.high, walk.low - ivec3(1));
-    walk.cell = select(along, beyond, inside);
+    ivec3 inside = gridwalk_walk_cell_at(walk, grid, walk.exit);
+    inside = min(max(inside, gridwalk_select(walk.up, walk.cell, walk.low)), gridwalk_select(walk.up, last, walk.cell));
+    ivec3 beyond = gridwalk_select(walk.up, walk.high, walk.low - ivec3(1));
+    walk.cell = gridwalk_select(along, beyond, inside);
     int coordinate = x ? walk.cell.x : (y ? walk.cell.y : walk.cell.z);
     uint count = x ? grid.resolution.x : (y ? grid.resolution.y : grid.resolution.z);
     if (uint(coordinate) >= count) {
         return false;
     }
-    walk_enter(walk, grid);
+    gridwalk_walk_enter(walk, grid);
     return true;
 }
 
 // Whether no cell ahead can hold a hit that is closer than the best, or as close.
-bool walk_is_over(Walk walk) { return walk.best_s <= walk.exit; }
+bool gridwalk_walk_is_over(GridwalkWalk walk) { return walk.best_s <= walk.exit; }
 
 // Whether a hit is in the ray's interval and closer than the best; of equal ones the lower index wins.
-bool walk_improves(Walk walk, float s, uint triangle) {
+bool gridwalk_walk_improves(GridwalkWalk walk, float s, uint triangle) {
     return s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle));
 }
 
-bool walk_test(Walk walk, GridHeader grid, uint triangle, out float s, out float u, out float v) {
-    Triangles triangles = Triangles(grid.triangles);
+bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint triangle, out float s, out float u, out float v) {
+    GridwalkTriangles triangles = GridwalkTriangles(grid.triangles);
     vec3 v0 = triangles.vertex[3u * triangle].xyz;
     vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
     vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
-    return intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && walk_improves(walk, s, triangle);
+    return gridwalk_intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && gridwalk_walk_improves(walk, s, triangle);
 }
 
 // The id of a triangle's geometry, and the triangle's number within it.
 uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
-    TriangleWordsIn words = TriangleWordsIn(grid.header.triangles);
-    return uvec2(words.vertex[3u * triangle + 1u].w, words.vertex[3u * triangle].w & TRIANGLE_NUMBER);
+    GridwalkTriangleWordsIn words = GridwalkTriangleWordsIn(grid.header.triangles);
+    return uvec2(words.vertex[3u * triangle + 1u].w, words.vertex[3u * triangle].w & GRIDWALK_TRIANGLE_NUMBER);
 }
 
 // Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
-bool sees_front(MovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-    vec3 a = permute(ray, v0 - ray.origin);
-    vec3 e1 = permute(ray, v1 - ray.origin) - a;
-    vec3 e2 = permute(ray, v2 - ray.origin) - a;
+bool gridwalk_sees_front(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
+    vec3 a = gridwalk_permute(ray, v0 - ray.origin);
+    vec3 e1 = gridwalk_permute(ray, v1 - ray.origin) - a;
+    vec3 e2 = gridwalk_permute(ray, v2 - ray.origin) - a;
     vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
     return (facing < 0.0) == (ray.shear.z > 0.0);
 }
 
 // Whether a triangle that the ray's line meets is one that the ray is to hit: by masks and by culling.
-bool walk_accepts(Walk walk, GridHeader grid, uint triangle) {
-    TriangleWordsIn words = TriangleWordsIn(grid.triangles);
+bool gridwalk_walk_accepts(GridwalkWalk walk, GridwalkGridHeader grid, uint triangle) {
+    GridwalkTriangleWordsIn words = GridwalkTriangleWordsIn(grid.triangles);
     if (walk.mask != 0xFFFFFFFFu && (words.vertex[3u * triangle + 2u].w & walk.mask) == 0u) {
         return false;
     }
@@ -417,15 +417,15 @@ bool walk_accepts(Walk walk, GridHeader grid, uint triangle) {
         return true;
     }
     uint flags = words.vertex[3u * triangle].w;
-    Triangles triangles = Triangles(grid.triangles);
-    bool front = sees_front(walk.ray, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
+    GridwalkTriangles triangles = GridwalkTriangles(grid.triangles);
+    bool front = gridwalk_sees_front(walk.ray, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
                             triangles.vertex[3u * triangle + 2u].xyz);
-    front = front != ((flags & TRIANGLE_FLIPPED) != 0u);
+    front = front != ((flags & GRIDWALK_TRIANGLE_FLIPPED) != 0u);
     bool culled = (walk.cull & (front ? GRIDWALK_CULL_FRONT : GRIDWALK_CULL_BACK)) != 0u;
-    return !culled || (flags & TRIANGLE_TWO_SIDED) != 0u;
+    return !culled || (flags & GRIDWALK_TRIANGLE_TWO_SIDED) != 0u;
 }
 
-void walk_commit(inout Walk walk, float s, float u, float v, uint triangle) {
+void gridwalk_walk_commit(inout GridwalkWalk walk, float s, float u, float v, uint triangle) {
     walk.best_s = s;
     walk.best_u = u;
     walk.best_v = v;
@@ -443,8 +443,8 @@ void walk_commit(inout Walk walk, float s, float u, float v, uint triangle) {
 struct GridwalkCandidates {
     Hit hit; // the candidate: set by gridwalk_next
     Ray ray;
-    GridHeader grid;
-    Walk walk;
+    GridwalkGridHeader grid;
+    GridwalkWalk walk;
     float s; // of the candidate
     uint turns;
     bool searching;
@@ -461,11 +461,11 @@ GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
     candidates.s = 0.0;
     candidates.turns = 0u;
     candidates.unfinished = false;
-    MovedRay moved = move_ray(ray, candidates.grid);
+    GridwalkMovedRay moved = gridwalk_move_ray(ray, candidates.grid);
     candidates.searching = moved.valid;
     candidates.walk.best_triangle = GRIDWALK_MISS;
     if (moved.valid) {
-        candidates.walk = walk_begin(candidates.grid, moved);
+        candidates.walk = gridwalk_walk_begin(candidates.grid, moved);
     }
     return candidates;
 }
@@ -486,16 +486,16 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
     if (candidates.unfinished) {
         candidates.searching = false;
     } else if (candidates.walk.reference < candidates.walk.list_end) {
-        uint triangle = References(candidates.grid.references).triangle[candidates.walk.reference];
+        uint triangle = GridwalkReferences(candidates.grid.references).triangle[candidates.walk.reference];
         candidates.walk.reference += 1u;
         float u;
         float v;
-        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)
-            && walk_accepts(candidates.walk, candidates.grid, triangle)) {
-            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
+        if (gridwalk_walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)
+            && gridwalk_walk_accepts(candidates.walk, candidates.grid, triangle)) {
+            candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
             return true;
         }
-    } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {
+    } else if (gridwalk_walk_is_over(candidates.walk) || !gridwalk_walk_step(candidates.walk, candidates.grid)) {
         candidates.searching = false;
     }
     return false;
@@ -513,7 +513,7 @@ bool gridwalk_next(inout GridwalkCandidates candidates) {
 
 // Makes the candidate the closest hit: later ones are closer still.
 void gridwalk_commit(inout GridwalkCandidates candidates) {
-    walk_commit(candidates.walk, candidates.s, candidates.hit.u, candidates.hit.v, candidates.hit.triangle);
+    gridwalk_walk_commit(candidates.walk, candidates.s, candidates.hit.u, candidates.hit.v, candidates.hit.triangle);
 }
 
 // Ends the search: gridwalk_next returns false.
@@ -523,11 +523,11 @@ Hit gridwalk_committed(GridwalkCandidates candidates) {
     if (candidates.unfinished) {
         return Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_UNFINISHED);
     }
-    Walk walk = candidates.walk;
+    GridwalkWalk walk = candidates.walk;
     if (walk.best_triangle == GRIDWALK_MISS) {
         return Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
     }
-    return Hit(hit_distance(walk.ray, candidates.ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
+    return Hit(gridwalk_hit_distance(walk.ray, candidates.ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
 }
 
 Hit gridwalk_closest_of(GridwalkCandidates candidates) {

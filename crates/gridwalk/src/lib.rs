@@ -80,7 +80,8 @@
 //!
 //! [`GRIDWALK_GLSL`] is the text of one include, without bindings: pass the grid region's address and call `gridwalk_closest_hit`,
 //! `gridwalk_any_hit`, or iterate over candidates. Its head documents the interface; [`GRIDWALK_GLSL_PATH`] is where it lies, for build
-//! scripts. Of Slang and HLSL nothing is offered: no compiler of theirs is part of the tests.
+//! scripts. All its names begin with `gridwalk`, in the case of their kind, but for the types `Ray` and `Hit`. Of Slang and HLSL nothing is
+//! offered: no compiler of theirs is part of the tests.
 //!
 //! # Example
 //!

@@ -149,13 +149,74 @@ pub fn closure(root: &Path, path: &str) -> Result<BTreeMap<String, String>> {
     Ok(found)
 }
 
+/// Global names that the public include may use without its prefix: the types of its interface.
+const PUBLIC_NAMES: [&str; 2] = ["Ray", "Hit"];
+
 /// A source file with its includes in place, each at its first mention only. Every included file must have an include guard, since that is
-/// what makes leaving out the later mentions sound.
+/// what makes leaving out the later mentions sound. All global names get the prefix of the public ones, so that none is in the way of the
+/// shader that includes the file.
 pub fn in_one_piece(root: &Path, path: &str) -> Result<String> {
     let mut out = format!("// Made by `cargo tool shaders` from {path} and its includes: edit those.\n");
     let mut seen = vec![path.to_owned()];
     expand(root, path, &mut seen, &mut out)?;
-    Ok(out)
+    Ok(prefixed(&out))
+}
+
+/// Prefixes every global name that has no prefix, in code but not in comments.
+fn prefixed(text: &str) -> String {
+    let names: BTreeMap<&str, String> = global_names(text)
+        .into_iter()
+        .filter(|name| !name.to_ascii_lowercase().starts_with("gridwalk") && !PUBLIC_NAMES.contains(name))
+        .map(|name| {
+            let prefix = match name {
+                _ if name.starts_with(char::is_lowercase) => "gridwalk_",
+                _ if name.contains(char::is_lowercase) => "Gridwalk",
+                _ => "GRIDWALK_",
+            };
+            (name, format!("{prefix}{name}"))
+        })
+        .collect();
+    let mut out = String::with_capacity(text.len() + text.len() / 8);
+    for line in text.lines() {
+        let (code, comment) = line.split_at(line.find("//").unwrap_or(line.len()));
+        for word in words(code) {
+            out.push_str(names.get(word).map_or(word, String::as_str));
+        }
+        out.push_str(comment);
+        out.push('\n');
+    }
+    out
+}
+
+/// A line as words and what stands between them.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    line.split_inclusive(move |c| !is_word(c)).flat_map(move |piece| {
+        let (word, sign) = piece.split_at(piece.trim_end_matches(|c| !is_word(c)).len());
+        [word, sign]
+    })
+}
+
+/// Names of functions, structures, buffers, constants and macros that a text declares outside of all braces, in the layout that the sources
+/// keep: a declaration begins its line.
+pub fn global_names(text: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let mut names = Vec::new();
+    for line in text.lines() {
+        let code = &line[..line.find("//").unwrap_or(line.len())];
+        if depth == 0 && !code.starts_with(' ') {
+            let parts: Vec<&str> = words(code).map(str::trim).filter(|word| !word.is_empty()).collect();
+            let name = match parts.as_slice() {
+                ["#", "define", name, ..] | ["struct", name, ..] | ["const", _, name, ..] => Some(*name),
+                ["layout", ..] => parts.iter().position(|word| *word == "buffer").and_then(|at| parts.get(at + 1)).copied(),
+                [_, name, "(", ..] if *name != "(" => Some(*name),
+                _ => None,
+            };
+            names.extend(name);
+        }
+        depth = (depth + code.matches('{').count()).saturating_sub(code.matches('}').count());
+    }
+    names
 }
 
 fn expand(root: &Path, path: &str, seen: &mut Vec<String>, out: &mut String) -> Result<()> {
@@ -198,6 +259,23 @@ mod tests {
         assert_eq!(included("  # include \"shared/a.glsl\" // why"), Some("shared/a.glsl"));
         assert_eq!(included("// #include \"shared/a.glsl\""), None);
         assert_eq!(included("#include <a>"), None);
+    }
+
+    #[test]
+    fn names_get_a_prefix() {
+        let text = "#ifndef A_GLSL\n#define A_GLSL\nconst float BEYOND = 1.0; // BEYOND stays here\nstruct Walk {\n    int walk;\n};\n\
+                    layout(buffer_reference) readonly buffer Cells { uvec2 range[]; };\n\
+                    void walk_on(inout Walk walk, Ray ray) { walk.walk = min(gridwalk_a(), int(BEYOND)); }\n#endif\n";
+        let names = global_names(text);
+        assert_eq!(names, ["A_GLSL", "BEYOND", "Walk", "Cells", "walk_on"]);
+        let out = prefixed(text);
+        assert!(out.contains("const float GRIDWALK_BEYOND = 1.0; // BEYOND stays here"), "{out}");
+        assert!(
+            out.contains(
+                "void gridwalk_walk_on(inout GridwalkWalk walk, Ray ray) { walk.walk = min(gridwalk_a(), int(GRIDWALK_BEYOND)); }"
+            )
+        );
+        assert!(out.contains("#ifndef GRIDWALK_A_GLSL\n") && out.contains("buffer GridwalkCells {"), "{out}");
     }
 
     #[test]
