@@ -16,6 +16,7 @@ layout(push_constant, std430) uniform AnyHit {
     WalkStatesInOut walks;
     // Of the variant with extras.
     MasksIn masks;
+    GeometriesOut geometries; // of the hit that ended the search
     uint mask;
     uint options;
 };
@@ -33,6 +34,7 @@ void main() {
     MovedRay moved = move_ray(ray, header);
     Counters seen = Counters(0u, 0u, 0u);
     uint result = 0u;
+    uint triangle = GRIDWALK_MISS;
     bool given_up = false;
     if (moved.valid) {
         Walk walk = walk_begin(header, moved);
@@ -43,7 +45,8 @@ void main() {
             TRACE_FILTER(walk, index)
         }
         given_up = !walk_run(walk, header, seen);
-        result = walk.best_triangle != GRIDWALK_MISS ? 1u : 0u;
+        triangle = walk.best_triangle;
+        result = triangle != GRIDWALK_MISS ? 1u : 0u;
         if (given_up) {
             if (LAST) {
                 result = GRIDWALK_UNFINISHED;
@@ -55,6 +58,9 @@ void main() {
     }
     if (!given_up || LAST) {
         occluded.occluded[index] = result;
+        if (EXTRAS && (options & OPTION_GEOMETRIES) != 0u) {
+            geometries.geometry[index] = result == 1u ? gridwalk_geometry(grid, triangle) : uvec2(GRIDWALK_MISS);
+        }
         walks.walk[index].given_up = 0u;
     }
 }

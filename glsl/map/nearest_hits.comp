@@ -15,6 +15,7 @@ layout(push_constant, std430) uniform NearestHits {
     TraceStateInOut state;
     WalkStatesInOut walks;
     MasksIn masks;
+    GeometriesOut geometries; // as many as hits
     uint mask;
     uint options;
     uint launch; // LAUNCH_* bits
@@ -31,10 +32,18 @@ struct Search {
     uint list_begin; // of the cell's list
 };
 
+void write_hit(uint at, Hit hit) {
+    hits.hit[at] = hit;
+    if ((options & OPTION_GEOMETRIES) != 0u) {
+        bool is_hit = hit.triangle < GRIDWALK_UNFINISHED;
+        geometries.geometry[at] = is_hit ? gridwalk_geometry(grid, hit.triangle) : uvec2(GRIDWALK_MISS);
+    }
+}
+
 // Writes the best hit, and begins again in the same cell. True if enough have been found.
 bool take(inout Search search, inout Walk walk, Ray ray) {
     Hit hit = Hit(hit_distance(walk.ray, ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
-    hits.hit[search.index * nearest + search.found] = hit;
+    write_hit(search.index * nearest + search.found, hit);
     search.found += 1u;
     search.floor_s = walk.best_s;
     search.floor_triangle = walk.best_triangle;
@@ -142,7 +151,7 @@ void main() {
     }
     if (!given_up || last) {
         for (uint i = search.found; i < nearest; ++i) {
-            hits.hit[index * nearest + i] = Hit(GRIDWALK_INFINITY, 0.0, 0.0, rest);
+            write_hit(index * nearest + i, Hit(GRIDWALK_INFINITY, 0.0, 0.0, rest));
         }
         walks.walk[index].given_up = 0u;
     }

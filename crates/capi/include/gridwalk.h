@@ -619,8 +619,9 @@ typedef struct GridwalkTraceInfo {
      */
     struct GridwalkRegion masks;
     /**
-     * Closest hit only: where the geometry of each hit is written, two `uint32_t` a ray: the id of its record, and the triangle's number
-     * within it; of a ray that hits nothing twice 0xFFFFFFFF. Left as it is where `resume` leaves the hit. Address 0: nowhere.
+     * Where the geometry of each hit is written, two `uint32_t` for each: the id of its record, and the triangle's number within it; twice
+     * 0xFFFFFFFF where there is no hit. Of closest hits one a ray, left as it is where `resume` leaves the hit; of any hit one a ray, of the
+     * hit that ended the search; of nearest hits as many a ray as hits. Address 0: nowhere. A count of hits has none.
      */
     struct GridwalkRegion geometries;
     /**

@@ -306,8 +306,9 @@ pub struct GridwalkTraceInfo {
     pub counters: GridwalkRegion,
     /// A `uint32_t` a ray: a mask of its own, of which only the bits of `mask` count; address 0: `mask` alone.
     pub masks: GridwalkRegion,
-    /// Closest hit only: where the geometry of each hit is written, two `uint32_t` a ray: the id of its record, and the triangle's number
-    /// within it; of a ray that hits nothing twice 0xFFFFFFFF. Left as it is where `resume` leaves the hit. Address 0: nowhere.
+    /// Where the geometry of each hit is written, two `uint32_t` for each: the id of its record, and the triangle's number within it; twice
+    /// 0xFFFFFFFF where there is no hit. Of closest hits one a ray, left as it is where `resume` leaves the hit; of any hit one a ray, of the
+    /// hit that ended the search; of nearest hits as many a ray as hits. Address 0: nowhere. A count of hits has none.
     pub geometries: GridwalkRegion,
     /// Mask of all rays: a geometry is hit only if its mask shares a bit with it. 0: 0xFFFFFFFF, which is also the mask of a mesh without
     /// a record.

@@ -30,7 +30,7 @@ pub static ANY_HIT: Kernel = Kernel {
     spirv: spirv!("../spirv/any_hit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 56,
+    push_constant_size: 64,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
@@ -38,6 +38,7 @@ pub static ANY_HIT: Kernel = Kernel {
         ("state", Access::ReadWrite),
         ("walks", Access::ReadWrite),
         ("masks", Access::Read),
+        ("geometries", Access::Write),
     ],
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
@@ -273,7 +274,7 @@ pub static NEAREST_HITS: Kernel = Kernel {
     spirv: spirv!("../spirv/nearest_hits.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 64,
+    push_constant_size: 72,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
@@ -281,6 +282,7 @@ pub static NEAREST_HITS: Kernel = Kernel {
         ("state", Access::ReadWrite),
         ("walks", Access::ReadWrite),
         ("masks", Access::Read),
+        ("geometries", Access::Write),
     ],
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
@@ -486,11 +488,13 @@ const _: () = {
     assert!(size(|host: &Host| &host.walks) == 8);
     assert!(core::mem::offset_of!(Host, masks) == 40);
     assert!(size(|host: &Host| &host.masks) == 8);
-    assert!(core::mem::offset_of!(Host, mask) == 48);
+    assert!(core::mem::offset_of!(Host, geometries) == 48);
+    assert!(size(|host: &Host| &host.geometries) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 56);
     assert!(size(|host: &Host| &host.mask) == 4);
-    assert!(core::mem::offset_of!(Host, options) == 52);
+    assert!(core::mem::offset_of!(Host, options) == 60);
     assert!(size(|host: &Host| &host.options) == 4);
-    assert!(size_of::<Host>() == 56);
+    assert!(size_of::<Host>() == 64);
 };
 const _: () = {
     use gridwalk_core::layout::Bounds as Host;
@@ -903,15 +907,17 @@ const _: () = {
     assert!(size(|host: &Host| &host.walks) == 8);
     assert!(core::mem::offset_of!(Host, masks) == 40);
     assert!(size(|host: &Host| &host.masks) == 8);
-    assert!(core::mem::offset_of!(Host, mask) == 48);
+    assert!(core::mem::offset_of!(Host, geometries) == 48);
+    assert!(size(|host: &Host| &host.geometries) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 56);
     assert!(size(|host: &Host| &host.mask) == 4);
-    assert!(core::mem::offset_of!(Host, options) == 52);
+    assert!(core::mem::offset_of!(Host, options) == 60);
     assert!(size(|host: &Host| &host.options) == 4);
-    assert!(core::mem::offset_of!(Host, launch) == 56);
+    assert!(core::mem::offset_of!(Host, launch) == 64);
     assert!(size(|host: &Host| &host.launch) == 4);
-    assert!(core::mem::offset_of!(Host, nearest) == 60);
+    assert!(core::mem::offset_of!(Host, nearest) == 68);
     assert!(size(|host: &Host| &host.nearest) == 4);
-    assert!(size_of::<Host>() == 64);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use crate::push::OverlapCount as Host;

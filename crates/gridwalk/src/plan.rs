@@ -545,18 +545,19 @@ pub fn trace_plan(query: Query, extras: Extras, max_rays: u32, indirect: bool) -
 fn trace_step(query: Query, extras: Extras, launch: u32) -> Step {
     use Buffer::*;
     let dispatch = Dispatch::Indirect(TraceState, offset_of!(gridwalk_core::layout::TraceState, arguments) as u64);
-    let (grid, rays, state, walks, masks) = (Header.token(), Rays.token(), TraceState.token(), Walks.token(), Masks.token());
+    let (grid, rays, state, walks) = (Header.token(), Rays.token(), TraceState.token(), Walks.token());
+    let (masks, geometries) = (Masks.token(), Geometries.token());
     let Extras { mask, options } = extras;
     let extra = if extras == Extras::NONE { 0 } else { EXTRAS };
     match query {
         Query::Closest { resume, count } => {
             let variant = launch | extra | if resume { RESUME } else { 0 } | if count { COUNT } else { 0 };
-            let (hits, counters, geometries) = (Hits.token(), Counters.token(), Geometries.token());
+            let (hits, counters) = (Hits.token(), Counters.token());
             let push = push::ClosestHit { grid, rays, hits, state, walks, counters, masks, geometries, mask, options };
             Step::new(&CLOSEST_HIT, dispatch, push).variant(variant)
         }
         Query::Any => {
-            let push = push::AnyHit { grid, rays, occluded: Hits.token(), state, walks, masks, mask, options };
+            let push = push::AnyHit { grid, rays, occluded: Hits.token(), state, walks, masks, geometries, mask, options };
             let extra = if extra == 0 { 0 } else { ANY_EXTRAS };
             Step::new(&ANY_HIT, dispatch, push).variant(launch | extra)
         }
@@ -566,7 +567,8 @@ fn trace_step(query: Query, extras: Extras, launch: u32) -> Step {
         }
         Query::Nearest { nearest, resume } => {
             let launch = launch | if resume { RESUME } else { 0 };
-            let push = push::NearestHits { grid, rays, hits: Hits.token(), state, walks, masks, mask, options, launch, nearest };
+            let hits = Hits.token();
+            let push = push::NearestHits { grid, rays, hits, state, walks, masks, geometries, mask, options, launch, nearest };
             Step::new(&NEAREST_HITS, dispatch, push)
         }
     }

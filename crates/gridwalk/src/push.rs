@@ -108,6 +108,7 @@ pub(crate) struct AnyHit {
     pub(crate) state: u64,
     pub(crate) walks: u64,
     pub(crate) masks: u64,
+    pub(crate) geometries: u64,
     pub(crate) mask: u32,
     pub(crate) options: u32,
 }
@@ -337,6 +338,7 @@ pub(crate) struct NearestHits {
     pub(crate) state: u64,
     pub(crate) walks: u64,
     pub(crate) masks: u64,
+    pub(crate) geometries: u64,
     pub(crate) mask: u32,
     pub(crate) options: u32,
     pub(crate) launch: u32,

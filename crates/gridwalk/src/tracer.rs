@@ -220,8 +220,9 @@ pub struct TraceInfo {
     pub masks: Option<Region>,
     /// Triangles that are not hit because of the side that the ray sees.
     pub cull: Cull,
-    /// Closest hit only: where the geometry of each hit is written, two `u32` a ray: the id of its record, and the triangle's number within
-    /// it; of a ray that hits nothing twice 0xFFFFFFFF. Left as it is where [`TraceInfo::resume`] leaves the hit.
+    /// Where the geometry of each hit is written, two `u32` for each: the id of its record, and the triangle's number within it; twice
+    /// 0xFFFFFFFF where there is no hit. Of closest hits one a ray, left as it is where [`TraceInfo::resume`] leaves the hit; of any hit one a
+    /// ray, of the hit that ended the search; of nearest hits as many a ray as hits. Counts have none.
     pub geometries: Option<Region>,
 }
 
@@ -588,7 +589,6 @@ impl Tracer {
         if info.resume || info.counters.is_some() {
             return Err(Error::Option { option: "resume, counters", value: "set".into(), expected: "closest hit alone has them" });
         }
-        only_closest_has_geometries(info)?;
         // SAFETY: the caller's contract.
         unsafe { self.trace(cmd, grid, info, Query::Any, 4) }
     }
@@ -602,10 +602,13 @@ impl Tracer {
     /// # Safety
     /// As for [`Tracer::cmd_closest_hit`].
     pub unsafe fn cmd_count_hits(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo) -> Result<()> {
-        if info.resume || info.counters.is_some() {
-            return Err(Error::Option { option: "resume, counters", value: "set".into(), expected: "counts of hits have none" });
+        if info.resume || info.counters.is_some() || info.geometries.is_some() {
+            return Err(Error::Option {
+                option: "resume, counters, geometries",
+                value: "set".into(),
+                expected: "counts of hits have none",
+            });
         }
-        only_closest_has_geometries(info)?;
         // SAFETY: the caller's contract.
         unsafe { self.trace(cmd, grid, info, Query::Count, 4) }
     }
@@ -627,7 +630,6 @@ impl Tracer {
         if info.counters.is_some() {
             return Err(Error::Option { option: "counters", value: "set".into(), expected: "closest hit alone has them" });
         }
-        only_closest_has_geometries(info)?;
         let hits = u64::from(info.count.max()) * u64::from(nearest);
         if hits > MAX_RAYS.into() {
             return Err(Error::Capacity { what: "hits", given: hits, limit: MAX_RAYS.into() });
@@ -674,7 +676,8 @@ impl Tracer {
         }
         let geometries = info.geometries.unwrap_or(Region::NONE);
         if info.geometries.is_some() {
-            check_region("geometries", &geometries, u64::from(max) * 8, 8)?;
+            // Of each hit of a ray.
+            check_region("geometries", &geometries, u64::from(max) * 8 * (hit_size / 16).max(1), 8)?;
         }
         let (rays, hits, scratch) = (info.rays, info.hits, info.scratch);
         let header = Region { address: grid, ..Region::NONE };
@@ -815,13 +818,6 @@ impl Drop for Tracer {
     }
 }
 
-fn only_closest_has_geometries(info: &TraceInfo) -> Result<()> {
-    match info.geometries {
-        None => Ok(()),
-        Some(_) => Err(Error::Option { option: "geometries", value: "set".into(), expected: "closest hit alone has them" }),
-    }
-}
-
 fn extras(info: &TraceInfo) -> Extras {
     let cull = match info.cull {
         Cull::None => 0,
@@ -864,6 +860,11 @@ fn is_stamped(item: &Item) -> bool {
 fn check_region(name: &'static str, region: &Region, size: u64, alignment: u64) -> Result<()> {
     if region.size < size {
         return Err(Error::Region { region: name, reason: format!("{} bytes where {size} are needed", region.size) });
+    }
+    if region.offset.checked_add(region.size).is_none() || region.address.checked_add(region.size).is_none() {
+        let Region { offset, size, address, .. } = region;
+        let reason = format!("{size} bytes from offset {offset} and address {address:#x} on reach beyond 2^64");
+        return Err(Error::Region { region: name, reason });
     }
     if size > 0 { check_address(name, region.address, alignment) } else { Ok(()) }
 }

@@ -217,7 +217,7 @@ fn all_hits_that_are_refused() {
         ("hits", refused(TraceInfo { count: RayCount::Direct(MAX_RAYS / 2), ..info }, Some(3))),
         ("resume", refused(TraceInfo { resume: true, ..info }, None)),
         ("geometries", refused(TraceInfo { geometries: Some(info.hits), ..info }, None)),
-        ("geometries", refused(TraceInfo { geometries: Some(info.hits), ..info }, Some(2))),
+        ("geometries", refused(TraceInfo { geometries: Some(part(8192, 31)), ..info }, Some(2))),
         ("masks", refused(TraceInfo { masks: Some(part(0, 4)), ..info }, None)),
         ("counters", refused(TraceInfo { counters: Some(info.hits), ..info }, Some(2))),
     ];

@@ -195,6 +195,46 @@ fn geometries_of_hits() {
     assert_eq!(found, gpu.closest(&built, &rays));
     assert_eq!(written, found.iter().map(expected).collect::<Vec<_>>());
     assert!(found.iter().filter(|hit| hit.is_hit()).count() > 1_000);
+
+    // Any hit: of one that the ray has. With masks, which the hit has to pass too.
+    let with = |info: &TraceInfo| TraceInfo { geometries: Some(geometries.region()), mask: 11, cull: Cull::Back, ..*info };
+    // SAFETY: as above.
+    let any: Vec<u32> = gpu.trace(&built, &rays, |cmd, at, info| unsafe { gpu.tracer.cmd_any_hit(cmd, at, &with(info)) });
+    geometries.check();
+    let written: Vec<[u32; 2]> = geometries.read(0, rays.len());
+    let copy = built.copy();
+    let grid = copy.view();
+    let mut farther = 0;
+    for (index, ray) in rays.iter().enumerate() {
+        let all = hits_of(&grid, ray, Filter { mask: 11, cull: CULL_BACK });
+        let of: Vec<[u32; 2]> = all.iter().map(expected).collect();
+        match any[index] {
+            0 => assert_eq!(written[index], [MISS, MISS], "ray {index}"),
+            _ => assert!(of.contains(&written[index]), "ray {index}: {:?} is none of {of:?}", written[index]),
+        }
+        farther += usize::from(any[index] == 1 && of.first() != Some(&written[index]));
+    }
+    assert!(farther > 10, "only {farther} hits are not the closest: one could not tell them from each other");
+
+    // The nearest hits, a geometry each, in portions.
+    let geometries = gpu.guarded("geometries of nearest hits", 3 * 8 * rays.len() as u64);
+    let mut portions: Vec<Vec<[Hit; 3]>> = Vec::new();
+    for portion in 0..2 {
+        let existing = gpu.upload("existing hits", portions.last().unwrap_or(&vec![[Hit::MISS; 3]; rays.len()]));
+        // SAFETY: as above.
+        let _: Vec<[Hit; 3]> = gpu.trace(&built, &rays, |cmd, at, info| unsafe {
+            let with = TraceInfo { resume: portion > 0, geometries: Some(geometries.region()), hits: existing.region(), ..*info };
+            gpu.tracer.cmd_nearest_hits(cmd, at, &with, 3)
+        });
+        geometries.check();
+        let found: Vec<[Hit; 3]> = existing.read(0, rays.len());
+        let written: Vec<[[u32; 2]; 3]> = geometries.read(0, rays.len());
+        assert_eq!(written, found.iter().map(|hits| hits.each_ref().map(expected)).collect::<Vec<_>>(), "portion {portion}");
+        let hits = found.iter().flatten().filter(|hit| hit.is_hit()).count();
+        assert!(hits > [2_000, 100][portion], "portion {portion}: {hits} hits");
+        portions.push(found);
+    }
+    assert_ne!(portions[0], portions[1]);
 }
 
 /// Several grids traced one after another into the same hits are one grid of all their triangles; geometries follow the hits.
