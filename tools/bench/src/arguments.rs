@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-/// Measures rebuilds and rays of gridwalk, with Embree as rival on the same triangles and rays where it is installed.
+/// Measures rebuilds and rays of gridwalk, and of its rivals on the same triangles and rays: Embree where it is installed.
 ///
-/// Our times are device times, Embree's are wall times; both are medians over the runs, taken in turns after a warm-up. Ratios above 1 mean
-/// faster than Embree; on a CPU driver there is a ratio of processor times too, which other work on the machine disturbs least. On lavapipe both
-/// use the same number of threads. Standard output carries the table, or JSON with `--json -`.
+/// Our times are device times, those of rivals on the host are wall times; all are medians over the runs, taken in turns after a warm-up. Ratios
+/// above 1 mean faster than the rival; on a CPU driver there is a ratio of processor times too, which other work on the machine disturbs least.
+/// On lavapipe all use the same number of threads. Standard output carries the table, or JSON with `--json -`.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "gridwalk-bench", bin_name = "cargo tool bench", version, args_conflicts_with_subcommands = true)]
 pub struct Arguments {
@@ -16,8 +16,9 @@ pub struct Arguments {
     #[command(subcommand)]
     pub mode: Option<Mode>,
 
-    /// Scenes: files (.obj, .toml), names (bunny, dragon, sponza, elephant) looked up in the folders of GRIDWALK_SCENES and in the cache of
-    /// `cargo tool scenes`, or made ones by number of triangles (sphere:N, bumpy:N, terrain:N, soup:N, stadium:N) [default: bumpy:70000]
+    /// Scenes: files (.obj, .toml), names (bunny, elephant, dragon, sponza, stadium, or `five` for all of these; forest, army, soup, or `all`)
+    /// looked up in the folders of GRIDWALK_SCENES and in the cache of `cargo tool scenes`, or made ones by number of triangles (sphere:N,
+    /// bumpy:N, terrain:N, soup:N, stadium:N) [default: bumpy:70000]
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
 
@@ -38,7 +39,8 @@ pub struct Arguments {
     pub runs: u32,
 
     /// Measure these alone: camera, reflection (of the camera rays' hits) and diffuse are closest hits, shadow (from the camera rays' hits
-    /// to the first light) and any (the diffuse rays once more) are any hits [default: all]
+    /// to the first light) and any (the diffuse rays once more) are any hits; frame is a rebuild with camera and shadow rays through what it
+    /// made; object, in the stadium, is the camera rays that look at what stands in its middle [default: all]
     #[arg(long, value_delimiter = ',', value_name = "WHAT")]
     pub only: Vec<Part>,
 
@@ -159,6 +161,8 @@ pub struct Common {
 pub enum Part {
     /// Rebuilds.
     Rebuild,
+    /// Rebuilds with camera and shadow rays.
+    Frame,
     /// Closest hits of camera rays.
     Camera,
     /// Any hits of shadow rays.
@@ -169,6 +173,8 @@ pub enum Part {
     Diffuse,
     /// Any hits of diffuse rays.
     Any,
+    /// Closest hits of camera rays that look at the object that a scene is about.
+    Object,
 }
 
 /// The overlap test of the build.

@@ -1,17 +1,18 @@
-//! Animations, everything rebuilt each frame, ours and the rival in turns.
+//! Animations, everything rebuilt each frame, ours and the rivals in turns.
 
-use anyhow::{Context as _, Result};
-use gridwalk::Hit;
-use gridwalk_render::{Context, Player, PlayerOptions, RayBatch, SeekStats};
+use anyhow::Result;
+use gridwalk_render::{Context, Player, PlayerOptions, SeekStats};
 use gridwalk_scene::{Animation, Camera, Framing, Light};
 
 use crate::arguments::Dynamic;
-use crate::dynamic_report::{FrameReport, RayCounts, SceneReport, Side};
-use crate::embree::{self, Embree};
-use crate::measure::{difference, median_steps, settings};
+use crate::contender::{Tree, turns};
+use crate::dynamic_report::{FrameReport, RayCount, SceneReport};
+use crate::measure::{Field, Frame, any_hit, closest, difference, median_steps, settings};
 use crate::moving::Moving;
+use crate::ours::Ours;
 use crate::rays::camera_rays;
-use crate::report::{Difference, Step, median};
+use crate::report::{Difference, Step};
+use crate::rivals::Rivals;
 use crate::surface::{Surface, Traced};
 
 /// Frames of a scene where none are asked for.
@@ -20,8 +21,8 @@ const MOST_FRAMES: u64 = 24;
 /// Measures one scene, frame by frame.
 ///
 /// # Errors
-/// What the scene's files, the device or the rival report.
-pub fn measure(context: &Context, embree: Option<&Embree>, arguments: &Dynamic, name: &str, moving: Moving) -> Result<SceneReport> {
+/// What the scene's files, the device or a rival reports.
+pub fn measure(context: &Context, rivals: &Rivals, arguments: &Dynamic, name: &str, moving: Moving) -> Result<SceneReport> {
     // The folder of a made scene is removed with the last frame.
     let Moving { animation, folder: _folder } = moving;
     let times = times(&animation, arguments.frames);
@@ -37,7 +38,7 @@ pub fn measure(context: &Context, embree: Option<&Embree>, arguments: &Dynamic, 
         let camera =
             camera_of.unwrap_or_else(|| animation.camera(None, time).unwrap_or_else(|| animation.scene.frame(&Framing::default())));
         let light = animation.lights(time).first().copied();
-        frames.push(frame(&mut player, embree, arguments, (time, &seek), &camera, light)?);
+        frames.push(frame(&mut player, rivals, arguments, (time, &seek), &camera, light)?);
     }
     eprintln!();
     Ok(SceneReport::new(name, frames))
@@ -59,7 +60,7 @@ fn times(animation: &Animation, frames: Option<u32>) -> Vec<f64> {
 
 fn frame(
     player: &mut Player,
-    embree: Option<&Embree>,
+    rivals: &Rivals,
     arguments: &Dynamic,
     (time, seek): (f64, &SeekStats),
     camera: &Camera,
@@ -69,59 +70,35 @@ fn frame(
     let extent = (0..3).map(|axis| report.box_max[axis] - report.box_min[axis]).fold(0.0, f32::max);
     let scene = player.scene();
     let surface = Surface { positions: scene.read_positions()?, indices: scene.read_indices()?, offset: extent * 1e-4 };
+    let contenders = rivals.contenders(&surface.positions, &surface.indices)?;
 
-    let camera_rays = camera_rays(camera, arguments.common.size);
-    let camera = Traced::new(player.grid(), camera_rays)?;
-    let reflections = Traced::new(player.grid(), surface.reflections(&camera))?;
-    let mut shadow_rays = surface.shadows(&camera, light);
-    shadow_rays.extend(surface.shadows(&reflections, light));
+    let camera = Traced::new(player.grid(), camera_rays(camera, arguments.common.size))?;
+    let reflection = Traced::new(player.grid(), surface.reflections(&camera))?;
+    let mut shadow = surface.shadows(&camera, light);
+    shadow.extend(surface.shadows(&reflection, light));
+    let sets = [closest("camera", camera.rays), closest("reflection", reflection.rays), any_hit("shadow", shadow)];
 
-    let context = player.grid().context().clone();
-    let mut camera_batch = RayBatch::new(&context, &camera.rays)?;
-    let mut reflection_batch = RayBatch::new(&context, &reflections.rays)?;
-    let mut shadow_batch = RayBatch::new(&context, &shadow_rays)?;
-    let mut theirs = match embree {
-        Some(embree) => {
-            let mesh = embree::Mesh::new(&surface.positions, &surface.indices).context("an index that leads nowhere")?;
-            let mut scene = embree.rebuildable(&mesh)?;
-            // The first build allocates.
-            scene.rebuild()?;
-            Some(scene)
+    let mut field = Field { ours: Ours::moving(player), rivals: contenders };
+    field.each(|contender| {
+        contender.prepare(Tree::Fast)?;
+        contender.load(&sets)
+    })?;
+    let turns = turns(arguments.runs, &mut field.all(), |contender| Frame::run(contender, &[1.0; 3]))?;
+    let names: Vec<&str> = field.all().iter().map(|contender| contender.name()).collect();
+    let mut sides = names.into_iter().zip(&turns).map(|(name, turns)| Frame::side(name, &sets, turns));
+    let (ours, sides) = (sides.next().unwrap_or_default(), sides.collect());
+    let mut differences = Vec::new();
+    for rival in &mut field.rivals {
+        let mut sum = Difference { rival: rival.name().to_owned(), ..Difference::default() };
+        for (index, hits) in [&camera.hits, &reflection.hits].into_iter().enumerate() {
+            let found = difference(rival.name(), &sets[index].rays, hits, &rival.answers(index)?);
+            sum.rays += found.rays;
+            sum.triangle += found.triangle;
+            sum.nearer += found.nearer;
+            sum.farther += found.farther;
         }
-        None => None,
-    };
-
-    let (mut ours, mut rival) = (Vec::new(), Vec::new());
-    let mut steps = Vec::new();
-    let mut their_hits = [vec![Hit::MISS; camera.rays.len()], vec![Hit::MISS; reflections.rays.len()]];
-    let mut their_answers = vec![0; shadow_rays.len()];
-    for _ in 0..arguments.runs {
-        player.rebuild()?;
-        let grid = player.grid();
-        let rebuild_ms = grid.stats().ms;
-        steps.push(grid.stats().steps.clone());
-        ours.push([rebuild_ms, camera_batch.closest_hit(grid)?, reflection_batch.closest_hit(grid)?, shadow_batch.any_hit(grid)?]);
-        if let Some(scene) = &mut theirs {
-            let rebuild_ms = scene.rebuild()?;
-            rival.push([
-                rebuild_ms,
-                scene.closest_hit(&camera.rays, &mut their_hits[0]),
-                scene.closest_hit(&reflections.rays, &mut their_hits[1]),
-                scene.any_hit(&shadow_rays, &mut their_answers),
-            ]);
-        }
+        differences.push(sum);
     }
-    let difference = theirs.is_some().then(|| {
-        let mut sum = Difference::default();
-        for (traced, theirs) in [&camera, &reflections].into_iter().zip(&their_hits) {
-            let Difference { triangle, nearer, farther, .. } = difference(&traced.rays, &traced.hits, theirs);
-            sum.triangle += triangle;
-            sum.nearer += nearer;
-            sum.farther += farther;
-        }
-        sum
-    });
-    let deform = seek.deform_steps.iter();
     Ok(FrameReport {
         time,
         triangles: report.triangles,
@@ -132,18 +109,11 @@ fn frame(
         hidden_ms: seek.hidden_ms,
         wait_ms: seek.wait_ms,
         deform_ms: seek.deform_ms,
-        deform_steps: deform
-            .map(|step| Step { name: step.name.to_owned(), kind: step.kind.to_owned(), count: step.count, ms: step.ms })
-            .collect(),
-        steps: median_steps(&steps),
-        rays: RayCounts { camera: camera.rays.len() as u64, reflection: reflections.rays.len() as u64, shadow: shadow_rays.len() as u64 },
-        ours: side(&ours),
-        embree: theirs.is_some().then(|| side(&rival)),
-        difference,
+        deform_steps: seek.deform_steps.iter().map(Step::of).collect(),
+        steps: median_steps(&field.ours.take_steps()),
+        rays: sets.iter().map(|set| RayCount { kind: set.kind.to_owned(), rays: set.rays.len() as u64 }).collect(),
+        ours,
+        rivals: sides,
+        differences,
     })
-}
-
-fn side(runs: &[[f64; 4]]) -> Side {
-    let part = |index: usize| median(runs.iter().map(|run| run[index]));
-    Side { rebuild_ms: part(0), camera_ms: part(1), reflection_ms: part(2), shadow_ms: part(3) }
 }

@@ -2,27 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::report::{Difference, Rival, Step, columns, head, median, number};
+use crate::report::{Difference, Setup, Side, Step, median};
+use crate::table::{columns, head, number};
 
 /// What a run of `dynamic` found. Times are milliseconds, medians over the runs of a frame.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
-    /// Version of this schema.
-    pub schema: u32,
-    /// Version of gridwalk.
-    pub version: String,
-    /// The Vulkan device.
-    pub device: String,
-    /// Its driver.
-    pub driver: String,
-    /// Whether it is a CPU.
-    pub device_is_cpu: bool,
-    /// The rival; none where it is not installed.
-    pub embree: Option<Rival>,
-    /// Width and height of the pictures whose rays are traced.
-    pub size: u32,
-    /// Runs of each frame.
-    pub runs: u32,
+    /// What was measured on, and against whom.
+    #[serde(flatten)]
+    pub setup: Setup,
     /// One entry a scene.
     pub scenes: Vec<SceneReport>,
 }
@@ -34,12 +22,21 @@ pub struct SceneReport {
     pub scene: String,
     /// Our frames a second, rebuild and rays: of the sum of all frames.
     pub fps: f64,
-    /// The rival's.
-    pub embree_fps: Option<f64>,
-    /// How often faster than the rival we are.
-    pub ratio: Option<f64>,
+    /// Each rival's.
+    pub rivals: Vec<Rate>,
     /// In order.
     pub frames: Vec<FrameReport>,
+}
+
+/// A rival's frames a second.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rate {
+    /// Who.
+    pub rival: String,
+    /// Of the sum of all frames.
+    pub fps: f64,
+    /// How often faster we are.
+    pub ratio: f64,
 }
 
 /// The figures of a frame.
@@ -67,48 +64,24 @@ pub struct FrameReport {
     pub deform_steps: Vec<Step>,
     /// The rebuild's steps, those of one kernel summed.
     pub steps: Vec<Step>,
-    /// Rays of the frame.
-    pub rays: RayCounts,
+    /// Rays of the frame, by kind: camera rays, a reflection ray from each hit of those, and rays to the light from the hits of both that
+    /// face it.
+    pub rays: Vec<RayCount>,
     /// Our times.
     pub ours: Side,
-    /// The rival's.
-    pub embree: Option<Side>,
-    /// How the hits of camera and reflection rays differ; without distances and examples.
-    pub difference: Option<Difference>,
+    /// The rivals'.
+    pub rivals: Vec<Side>,
+    /// How the hits of camera and reflection rays differ from each rival's; without distances and examples.
+    pub differences: Vec<Difference>,
 }
 
-/// Rays of a frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RayCounts {
-    /// One a pixel.
-    pub camera: u64,
-    /// One from each hit of those.
-    pub reflection: u64,
-    /// To the light, from the hits of both that face it.
-    pub shadow: u64,
-}
-
-/// What a frame took one of the two.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Side {
-    /// From the triangles to what can be traced.
-    pub rebuild_ms: f64,
-    /// Closest hits of camera rays.
-    pub camera_ms: f64,
-    /// Closest hits of reflection rays.
-    pub reflection_ms: f64,
-    /// Any hits of shadow rays.
-    pub shadow_ms: f64,
-}
-
-impl Side {
-    fn trace_ms(&self) -> f64 {
-        self.camera_ms + self.reflection_ms + self.shadow_ms
-    }
-
-    fn frame_ms(&self) -> f64 {
-        self.rebuild_ms + self.trace_ms()
-    }
+/// Rays of a kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RayCount {
+    /// Which.
+    pub kind: String,
+    /// How many.
+    pub rays: u64,
 }
 
 impl SceneReport {
@@ -116,10 +89,12 @@ impl SceneReport {
     pub fn new(scene: &str, frames: Vec<FrameReport>) -> SceneReport {
         let rate = |sum: f64| if sum > 0.0 { frames.len() as f64 * 1e3 / sum } else { 0.0 };
         let fps = rate(frames.iter().map(|frame| frame.ours.frame_ms()).sum());
-        let theirs: Option<f64> = frames.iter().map(|frame| frame.embree.map(|side| side.frame_ms())).sum();
-        let embree_fps = theirs.map(rate);
-        let ratio = embree_fps.filter(|fps| *fps > 0.0).map(|theirs| fps / theirs);
-        SceneReport { scene: scene.to_owned(), fps, embree_fps, ratio, frames }
+        let names = frames.first().map_or(&[][..], |frame| &frame.rivals).iter().map(|side| side.name.clone());
+        let rivals = names.enumerate().filter_map(|(index, rival)| {
+            let theirs = rate(frames.iter().map(|frame| frame.rivals.get(index).map(Side::frame_ms)).sum::<Option<f64>>()?);
+            (theirs > 0.0).then(|| Rate { rival, fps: theirs, ratio: fps / theirs })
+        });
+        SceneReport { scene: scene.to_owned(), fps, rivals: rivals.collect(), frames }
     }
 }
 
@@ -132,66 +107,47 @@ impl FrameReport {
 impl Report {
     /// A line a frame, and one a scene; then the rebuild's steps.
     pub fn table(&self) -> String {
-        let mut text = format!("{} ({})\n", self.device, self.driver);
-        text += &match &self.embree {
-            Some(rival) => {
-                format!("against Embree {}, {} threads: Morton rebuild, rays through its tree; ", rival.version, rival.threads)
-            }
-            None => "Embree is not there: its columns are empty; ".to_owned(),
-        };
+        let mut text = self.setup.text();
         text += &format!(
-            "{0} x {0} camera rays, medians of {1} runs, milliseconds; a ratio above 1 is faster than Embree\n",
-            self.size, self.runs
+            "{0} x {0} camera rays, medians of {1} runs, milliseconds; rivals' rays through what their rebuild makes; a ratio above 1 is faster \
+             than the rival\n",
+            self.setup.size, self.setup.runs
         );
         for scene in &self.scenes {
-            let mut rows = vec![head(&[
-                &scene.scene,
-                "triangles",
-                "read",
-                "upload",
-                "hidden",
-                "deform",
-                "rebuild",
-                "map",
-                "cooperative",
-                "camera",
-                "reflection",
-                "shadow",
-                "Mrays",
-                "frames/s",
-                "Embree rebuild",
-                "trace",
-                "frames/s",
-                "ratio",
-            ])];
-            for (place, frame) in scene.frames.iter().enumerate() {
-                let ms = |value: f64| number(Some(value));
-                let rate = |side: &Side| 1e3 / side.frame_ms().max(f64::MIN_POSITIVE);
-                let RayCounts { camera, reflection, shadow } = frame.rays;
-                let mut row = vec![place.to_string(), frame.triangles.to_string()];
-                row.extend([frame.read_ms, frame.upload_ms, frame.hidden_ms, frame.deform_ms, frame.ours.rebuild_ms].map(ms));
-                row.extend(["map", "cooperative"].map(|kind| ms(frame.kind_ms(kind))));
-                row.extend([frame.ours.camera_ms, frame.ours.reflection_ms, frame.ours.shadow_ms].map(ms));
-                row.push(format!("{:.2}", (camera + reflection + shadow) as f64 * 1e-6));
-                row.push(ms(rate(&frame.ours)));
-                let theirs = frame.embree.as_ref();
-                row.push(number(theirs.map(|side| side.rebuild_ms)));
-                row.push(number(theirs.map(Side::trace_ms)));
-                row.push(number(theirs.map(rate)));
-                row.push(number(theirs.map(|side| side.frame_ms() / frame.ours.frame_ms().max(f64::MIN_POSITIVE))));
-                rows.push(row);
+            let mut first = head(&[&scene.scene, "triangles", "read", "upload", "hidden", "deform", "rebuild", "map", "cooperative"]);
+            first.extend(head(&["camera", "reflection", "shadow", "Mrays", "frames/s"]));
+            for rival in &scene.rivals {
+                first.push(format!("{} rebuild", rival.rival));
+                first.extend(head(&["rays", "frames/s", "ratio"]));
             }
+            let mut rows = vec![first];
+            rows.extend(scene.frames.iter().enumerate().map(|(place, frame)| frame.row(place)));
             text += &format!("\n{}", columns(&rows));
-            text += &format!(
-                "{}: {} frames a second, Embree {}, ratio {}\n",
-                scene.scene,
-                number(Some(scene.fps)),
-                number(scene.embree_fps),
-                number(scene.ratio)
-            );
-            text += &scene.steps();
+            text += &format!("{}: {} frames a second", scene.scene, number(Some(scene.fps)));
+            for Rate { rival, fps, ratio } in &scene.rivals {
+                text += &format!("; {rival} {}, ratio {}", number(Some(*fps)), number(Some(*ratio)));
+            }
+            text += &format!("\n{}", scene.steps());
         }
         text
+    }
+}
+
+impl FrameReport {
+    fn row(&self, place: usize) -> Vec<String> {
+        let ms = |value: f64| number(Some(value));
+        let rate = |side: &Side| 1e3 / side.frame_ms().max(f64::MIN_POSITIVE);
+        let mut row = vec![place.to_string(), self.triangles.to_string()];
+        row.extend([self.read_ms, self.upload_ms, self.hidden_ms, self.deform_ms, self.ours.rebuild_ms].map(ms));
+        row.extend(["map", "cooperative"].map(|kind| ms(self.kind_ms(kind))));
+        row.extend(["camera", "reflection", "shadow"].map(|kind| ms(self.ours.kind_ms(kind))));
+        row.push(format!("{:.2}", self.rays.iter().map(|rays| rays.rays).sum::<u64>() as f64 * 1e-6));
+        row.push(ms(rate(&self.ours)));
+        for side in &self.rivals {
+            let ratio = side.frame_ms() / self.ours.frame_ms().max(f64::MIN_POSITIVE);
+            row.extend([side.rebuild_ms, side.trace_ms(), rate(side), ratio].map(ms));
+        }
+        row
     }
 }
 
@@ -216,10 +172,16 @@ impl SceneReport {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::KindTime;
 
     #[test]
     fn rates_are_of_the_sum_of_all_frames() {
-        let side = |ms: f64| Side { rebuild_ms: ms, camera_ms: 1.0, reflection_ms: 2.0, shadow_ms: 1.0 };
+        let kind = |kind: &str, ms| KindTime { kind: kind.to_owned(), ms };
+        let side = |ms: f64| Side {
+            name: "Embree".to_owned(),
+            rebuild_ms: ms,
+            rays: vec![kind("camera", 1.0), kind("reflection", 2.0), kind("shadow", 1.0)],
+        };
         let frame = |ms: f64, theirs: Option<f64>| FrameReport {
             time: 0.0,
             triangles: 1,
@@ -232,13 +194,14 @@ mod tests {
             deform_ms: 0.0,
             deform_steps: Vec::new(),
             steps: Vec::new(),
-            rays: RayCounts::default(),
+            rays: Vec::new(),
             ours: side(ms),
-            embree: theirs.map(side),
-            difference: None,
+            rivals: theirs.into_iter().map(side).collect(),
+            differences: Vec::new(),
         };
         let scene = SceneReport::new("two", vec![frame(6.0, Some(1.0)), frame(26.0, Some(11.0))]);
-        assert_eq!((scene.fps, scene.embree_fps, scene.ratio), (50.0, Some(100.0), Some(0.5)));
-        assert_eq!(SceneReport::new("alone", vec![frame(6.0, None)]).ratio, None);
+        assert_eq!(scene.fps, 50.0);
+        assert_eq!(scene.rivals, [Rate { rival: "Embree".to_owned(), fps: 100.0, ratio: 0.5 }]);
+        assert!(SceneReport::new("alone", vec![frame(6.0, None)]).rivals.is_empty());
     }
 }

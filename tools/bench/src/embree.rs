@@ -5,7 +5,7 @@ use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 use std::mem::{ManuallyDrop, offset_of};
 use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context as _, Result, bail};
@@ -13,6 +13,8 @@ use gridwalk::{Hit, Ray};
 use libloading::Library;
 
 use crate::arguments::Quality;
+use crate::contender::Tree;
+use crate::host::{HostTree, Library as Rival};
 
 /// `RTCRayHit`: `RTCRay` of 48 bytes and `RTCHit` of 32. Embree 4.3 appends the primitive of the instance, 4 bytes, which falls into
 /// `spare`; both count on one level of instances, as the headers do by default.
@@ -36,6 +38,28 @@ struct RayHit {
     spare: [u32; 4],
 }
 
+impl RayHit {
+    fn new(ray: &Ray) -> RayHit {
+        RayHit {
+            origin: ray.origin,
+            near: ray.t_min,
+            direction: ray.direction,
+            time: 0.0,
+            far: ray.t_max,
+            mask: u32::MAX,
+            id: 0,
+            flags: 0,
+            normal: [0.0; 3],
+            u: 0.0,
+            v: 0.0,
+            primitive: NOTHING,
+            geometry: NOTHING,
+            instance: NOTHING,
+            spare: [NOTHING; 4],
+        }
+    }
+}
+
 const _: () = assert!(offset_of!(RayHit, far) == 32 && offset_of!(RayHit, normal) == 48 && offset_of!(RayHit, primitive) == 68);
 const _: () = assert!(offset_of!(RayHit, spare) == 80 && size_of::<RayHit>() == 96 && align_of::<RayHit>() == 16);
 
@@ -46,6 +70,12 @@ struct QueryContext {
     flags: c_uint,
     filter: *const c_void,
     instance: u32,
+}
+
+impl QueryContext {
+    fn new() -> QueryContext {
+        QueryContext { flags: 0, filter: std::ptr::null(), instance: NOTHING }
+    }
 }
 
 const _: () = assert!(size_of::<QueryContext>() == 24 && offset_of!(QueryContext, instance) == 16);
@@ -123,6 +153,9 @@ pub struct Embree {
     path: PathBuf,
     threads: u32,
 }
+
+/// As the report has it.
+pub const NAME: &str = "Embree";
 
 /// The usual names, the newest first.
 const NAMES: &[&str] = if cfg!(windows) {
@@ -212,28 +245,6 @@ impl Embree {
         self.threads
     }
 
-    /// A scene made for the fastest rebuild: Morton order, dynamic. Not committed yet.
-    ///
-    /// # Errors
-    /// What Embree reports.
-    pub fn rebuildable(&self, mesh: &Arc<Mesh>) -> Result<Scene> {
-        self.scene(mesh, FLAG_DYNAMIC, QUALITY_LOW)
-    }
-
-    /// A committed scene made for the fastest rays.
-    ///
-    /// # Errors
-    /// What Embree reports.
-    pub fn traceable(&self, mesh: &Arc<Mesh>, quality: Quality) -> Result<Scene> {
-        let quality = match quality {
-            Quality::Medium => QUALITY_MEDIUM,
-            Quality::High => QUALITY_HIGH,
-        };
-        let mut scene = self.scene(mesh, FLAG_NONE, quality)?;
-        scene.rebuild()?;
-        Ok(scene)
-    }
-
     fn scene(&self, mesh: &Arc<Mesh>, flags: c_int, quality: c_int) -> Result<Scene> {
         let Loaded { functions, device, .. } = &*self.loaded;
         let device = device.0.as_ptr();
@@ -268,6 +279,40 @@ impl Embree {
             0 => Ok(()),
             error => bail!("Embree reports error {error}"),
         }
+    }
+}
+
+/// Embree with the mesh that its trees are of.
+pub struct Meshed {
+    /// The device.
+    pub embree: Embree,
+    /// The triangles.
+    pub mesh: Arc<Mesh>,
+    /// Of the tree for the fastest rays.
+    pub quality: Quality,
+}
+
+impl Rival for Meshed {
+    type Tree = Scene;
+
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn threads(&self) -> u32 {
+        self.embree.threads
+    }
+
+    fn tree(&self, tree: Tree) -> Result<Scene> {
+        let (flags, quality) = match (tree, self.quality) {
+            // In Morton order.
+            (Tree::Fast, _) => (FLAG_DYNAMIC, QUALITY_LOW),
+            (Tree::Best, Quality::Medium) => (FLAG_NONE, QUALITY_MEDIUM),
+            (Tree::Best, Quality::High) => (FLAG_NONE, QUALITY_HIGH),
+        };
+        let mut scene = self.embree.scene(&self.mesh, flags, quality)?;
+        scene.rebuild()?;
+        Ok(scene)
     }
 }
 
@@ -313,15 +358,8 @@ impl Drop for Scene {
     }
 }
 
-/// Rays that a thread takes at once.
-const CHUNK: usize = 4096;
-
-impl Scene {
-    /// Builds the tree again as if all vertices had moved; returns the milliseconds.
-    ///
-    /// # Errors
-    /// What Embree reports.
-    pub fn rebuild(&mut self) -> Result<f64> {
+impl HostTree for Scene {
+    fn rebuild(&mut self) -> Result<f64> {
         let functions = &self.embree.loaded.functions;
         let begin = Instant::now();
         // SAFETY: living objects; `&mut self` keeps queries away; the buffers live in `self.mesh`.
@@ -338,81 +376,33 @@ impl Scene {
         Ok(ms)
     }
 
-    /// The closest hit of every ray, one call a ray; returns the milliseconds. The scene was committed before.
-    pub fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) -> f64 {
-        let answer = |ray: &RayHit| {
-            if ray.geometry == NOTHING { Hit::MISS } else { Hit { t: ray.far, u: ray.u, v: ray.v, triangle: ray.primitive } }
-        };
+    fn closest(&self, ray: &Ray) -> Hit {
+        let mut query = RayHit::new(ray);
+        let scene = self.scene.0.as_ptr();
         match self.embree.loaded.functions.query {
-            Query::Three { intersect, .. } => self.run(rays, hits, |scene, ray| {
-                let mut context = QueryContext { flags: 0, filter: std::ptr::null(), instance: NOTHING };
-                // SAFETY: a committed scene, and structures with the layout of Embree 3's headers.
-                unsafe { intersect(scene, &mut context, ray) };
-                answer(ray)
-            }),
-            Query::Four { intersect, .. } => self.run(rays, hits, |scene, ray| {
-                // SAFETY: a committed scene, a structure with the layout of Embree 4's headers, and no arguments, which is allowed.
-                unsafe { intersect(scene, ray, std::ptr::null()) };
-                answer(ray)
-            }),
+            // SAFETY: a scene that was committed when it was made, and structures with the layout of Embree 3's headers.
+            Query::Three { intersect, .. } => unsafe { intersect(scene, &mut QueryContext::new(), &mut query) },
+            // SAFETY: likewise, a structure with the layout of Embree 4's headers, and no arguments, which is allowed.
+            Query::Four { intersect, .. } => unsafe { intersect(scene, &mut query, std::ptr::null()) },
         }
+        if query.geometry == NOTHING { Hit::MISS } else { Hit { t: query.far, u: query.u, v: query.v, triangle: query.primitive } }
     }
 
-    /// Whether each ray hits anything, one call a ray: 1 or 0; returns the milliseconds. The scene was committed before.
-    pub fn any_hit(&self, rays: &[Ray], answers: &mut [u32]) -> f64 {
+    fn any(&self, ray: &Ray) -> bool {
+        let mut query = RayHit::new(ray);
+        let scene = self.scene.0.as_ptr();
+        match self.embree.loaded.functions.query {
+            // SAFETY: as in `closest`; the query touches the ray alone, which comes first in the structure.
+            Query::Three { occluded, .. } => unsafe { occluded(scene, &mut QueryContext::new(), &mut query) },
+            // SAFETY: as above.
+            Query::Four { occluded, .. } => unsafe { occluded(scene, &mut query, std::ptr::null()) },
+        }
         // A ray that hits comes back with an end of minus infinity.
-        let answer = |ray: &RayHit| u32::from(ray.far < 0.0);
-        match self.embree.loaded.functions.query {
-            Query::Three { occluded, .. } => self.run(rays, answers, |scene, ray| {
-                let mut context = QueryContext { flags: 0, filter: std::ptr::null(), instance: NOTHING };
-                // SAFETY: as in `closest_hit`; the query touches the ray alone, which comes first in the structure.
-                unsafe { occluded(scene, &mut context, ray) };
-                answer(ray)
-            }),
-            Query::Four { occluded, .. } => self.run(rays, answers, |scene, ray| {
-                // SAFETY: as above.
-                unsafe { occluded(scene, ray, std::ptr::null()) };
-                answer(ray)
-            }),
-        }
+        query.far < 0.0
     }
 
-    fn run<T: Send>(&self, rays: &[Ray], answers: &mut [T], ask: impl Fn(Raw, &mut RayHit) -> T + Sync) -> f64 {
-        let begin = Instant::now();
-        let work = Mutex::new(rays.chunks(CHUNK).zip(answers.chunks_mut(CHUNK)));
-        let thread = || {
-            let scene = self.scene;
-            loop {
-                let Some((rays, answers)) = work.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
-                for (ray, answer) in rays.iter().zip(answers) {
-                    let mut query = RayHit {
-                        origin: ray.origin,
-                        near: ray.t_min,
-                        direction: ray.direction,
-                        time: 0.0,
-                        far: ray.t_max,
-                        mask: u32::MAX,
-                        id: 0,
-                        flags: 0,
-                        normal: [0.0; 3],
-                        u: 0.0,
-                        v: 0.0,
-                        primitive: NOTHING,
-                        geometry: NOTHING,
-                        instance: NOTHING,
-                        spare: [NOTHING; 4],
-                    };
-                    *answer = ask(scene.0.as_ptr(), &mut query);
-                }
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 1..self.embree.threads {
-                scope.spawn(thread);
-            }
-            thread();
-        });
-        begin.elapsed().as_secs_f64() * 1e3
+    fn bytes(&self) -> Option<u64> {
+        None
     }
 }
 
@@ -439,17 +429,15 @@ mod tests {
         };
         let mesh = Mesh::new(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]], &[[0, 1, 2]]).unwrap();
         let ray = |x: f32| Ray { origin: [x, 0.25, 0.0], t_min: 0.0, direction: [0.0, 0.0, 1.0], t_max: f32::INFINITY };
-        let rays = [ray(0.5), ray(2.0)];
-        let mut dynamic = embree.rebuildable(&mesh).unwrap();
-        dynamic.rebuild().unwrap();
-        dynamic.rebuild().unwrap();
-        for scene in [dynamic, embree.traceable(&mesh, Quality::Medium).unwrap(), embree.traceable(&mesh, Quality::High).unwrap()] {
-            let mut hits = [Hit::MISS; 2];
-            scene.closest_hit(&rays, &mut hits);
-            assert_eq!(hits, [Hit { t: 1.0, u: 0.5, v: 0.25, triangle: 0 }, Hit::MISS]);
-            let mut answers = [7; 2];
-            scene.any_hit(&rays, &mut answers);
-            assert_eq!(answers, [1, 0]);
+        for quality in [Quality::Medium, Quality::High] {
+            let rival = Meshed { embree: embree.clone(), mesh: Arc::clone(&mesh), quality };
+            for tree in [Tree::Fast, Tree::Best] {
+                let mut scene = rival.tree(tree).unwrap();
+                scene.rebuild().unwrap();
+                assert_eq!(scene.closest(&ray(0.5)), Hit { t: 1.0, u: 0.5, v: 0.25, triangle: 0 });
+                assert_eq!(scene.closest(&ray(2.0)), Hit::MISS);
+                assert_eq!([scene.any(&ray(0.5)), scene.any(&ray(2.0))], [true, false]);
+            }
         }
     }
 }

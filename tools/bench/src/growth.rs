@@ -3,7 +3,8 @@
 use clap::Parser as _;
 
 use crate::arguments::{Arguments, Growth};
-use crate::report::{Report, SceneReport, columns, head};
+use crate::report::{Comparison, Report, SceneReport};
+use crate::table::{columns, head};
 
 /// Sizes a tenfold.
 const STEPS_EACH_DECADE: f64 = 2.0;
@@ -33,28 +34,31 @@ fn slope(points: &[(f64, f64)]) -> Option<f64> {
     (logarithms.len() > 1 && square > 0.0).then(|| both / square)
 }
 
-/// A row for each figure: the exponents of ours and of the rival's.
+/// A row for each figure: the exponents of ours and of the rivals'.
 pub fn slopes(report: &Report) -> String {
     let fit = |value: &dyn Fn(&SceneReport) -> Option<f64>| {
         let points: Vec<(f64, f64)> = report.scenes.iter().filter_map(|scene| Some((f64::from(scene.triangles), value(scene)?))).collect();
         slope(&points).map_or_else(|| "-".to_owned(), |slope| format!("{slope:.2}"))
     };
-    let mut rows = vec![head(&["grows as triangles to the power of", "ours", "Embree"])];
-    rows.push(vec![
-        "rebuild".to_owned(),
-        fit(&|scene| Some(scene.rebuild.as_ref()?.ours.median_ms)),
-        fit(&|scene| Some(scene.rebuild.as_ref()?.embree?.median_ms)),
-    ]);
-    for kind in ["camera", "shadow", "reflection", "diffuse", "any"] {
-        let find = |scene: &SceneReport| scene.rays.iter().find(|rays| rays.kind == kind).cloned();
+    let rivals = || report.setup.rivals.iter().map(|rival| rival.name.as_str());
+    let mut first = head(&["grows as triangles to the power of", "ours"]);
+    first.extend(rivals().map(str::to_owned));
+    let mut rows = vec![first];
+    let figures = report.scenes.first().map_or(Vec::new(), |scene| scene.figures().map(|(name, _)| name).collect());
+    for name in figures {
         // Of a ray: shadow and reflection rays are more or fewer with the shape.
-        rows.push(vec![
-            format!("{kind} ray"),
-            fit(&|scene| find(scene).map(|rays| rays.time.ours.median_ms / rays.rays as f64)),
-            fit(&|scene| find(scene).and_then(|rays| Some(rays.time.embree?.median_ms / rays.rays as f64))),
-        ]);
+        let time = |scene: &SceneReport, of: &dyn Fn(&Comparison) -> Option<f64>| {
+            let rays = scene.rays.iter().find(|rays| rays.kind == name).map_or(1.0, |rays| rays.rays as f64);
+            let (_, comparison) = scene.figures().find(|(other, _)| *other == name)?;
+            Some(of(comparison)? / rays)
+        };
+        let is_rays = report.scenes.iter().any(|scene| scene.rays.iter().any(|rays| rays.kind == name));
+        let mut row = vec![if is_rays { format!("{name} ray") } else { name.to_owned() }];
+        row.push(fit(&|scene| time(scene, &|comparison| Some(comparison.ours.median_ms))));
+        row.extend(rivals().map(|rival| fit(&|scene| time(scene, &|comparison| Some(comparison.against(rival)?.times.median_ms)))));
+        rows.push(row);
     }
-    rows.push(vec!["memory".to_owned(), fit(&|scene| Some((scene.grid_bytes + scene.scratch_bytes) as f64)), "-".to_owned()]);
+    rows.push(vec!["memory".to_owned(), fit(&|scene| Some((scene.grid_bytes + scene.scratch_bytes) as f64))]);
     format!("\n{}", columns(&rows))
 }
 

@@ -1,37 +1,42 @@
-//! `cargo tool bench`: rebuilds and rays of gridwalk, measured on the device, with Embree as rival where it is installed.
+//! `cargo tool bench`: rebuilds and rays of gridwalk, measured on the device, beside those of its rivals on this machine.
 #![deny(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics"))]
 
 mod arguments;
 mod compare;
+mod contender;
 mod dynamic;
 mod dynamic_report;
 #[allow(unsafe_code, reason = "calls a C library")]
 mod embree;
 mod growth;
+mod host;
 mod measure;
 mod moving;
+mod ours;
 mod plot;
 mod rays;
 #[allow(unsafe_code, reason = "records commands")]
 mod record;
 mod report;
+mod rivals;
 mod scenes;
 mod surface;
+mod table;
 mod vector;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use clap::Parser;
 use gridwalk_render::{Context, ContextDesc, GridBuilder};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::arguments::{Arguments, Common, Dynamic, Mode};
-use crate::embree::Embree;
-use crate::report::{Report, Rival};
+use crate::arguments::{Arguments, Common, Dynamic, Mode, Quality};
+use crate::report::{Report, SCHEMA, Setup};
+use crate::rivals::Rivals;
 
 /// What lavapipe counts its threads by.
 const LAVAPIPE_THREADS: &str = "LP_NUM_THREADS";
@@ -78,7 +83,7 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
                 table += &compare::changes(old, &report);
             }
             if let Some(path) = &arguments.plot {
-                let picture = plot::svg(&report).context("nothing to plot: Embree is not there")?;
+                let picture = plot::bars(&report).context("nothing to plot: no rival is there")?;
                 std::fs::write(path, picture).with_context(|| format!("{}: cannot be written", path.display()))?;
             }
             write(common, &report, &table)?;
@@ -88,7 +93,16 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
 }
 
 fn read_report(path: &Path) -> Result<Report> {
+    #[derive(Deserialize)]
+    struct Schema {
+        schema: u32,
+    }
     let text = std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    if let Ok(Schema { schema }) = serde_json::from_str(&text)
+        && schema != SCHEMA
+    {
+        bail!("{}: figures of schema {schema}, which is not {SCHEMA}: measure them anew", path.display());
+    }
     serde_json::from_str(&text).with_context(|| format!("{}: no figures of this benchmark; write them with --json", path.display()))
 }
 
@@ -114,79 +128,53 @@ fn threads(common: &Common) -> u32 {
     common.threads.or_else(set).unwrap_or_else(machine).max(1)
 }
 
-/// The rival, where it is installed and wanted, and the device.
-fn open(common: &Common) -> Result<(Option<Embree>, Context)> {
-    let embree = if common.no_embree { None } else { Embree::load(common.embree.as_deref(), threads(common))? };
-    if embree.is_none() && !common.no_embree {
-        eprintln!("gridwalk-bench: Embree is not installed (Debian: apt-get install libembree3-3 or libembree4-4): measuring without it");
-    }
+/// The device, the rivals, and what the report says of both.
+fn open(common: &Common, quality: Quality, runs: u32) -> Result<(Context, Rivals, Setup)> {
     let Ok(device) = common.device.parse();
     let context = Context::new(&ContextDesc { device, name: "gridwalk-bench", ..ContextDesc::default() })?;
-    Ok((embree, context))
-}
-
-fn rival(embree: &Embree, trace_quality: &str) -> Rival {
-    Rival {
-        version: embree.version(),
-        library: embree.path().display().to_string(),
-        threads: embree.threads(),
-        trace_quality: trace_quality.to_owned(),
-    }
-}
-
-fn run(arguments: &Arguments) -> Result<Report> {
-    let common = &arguments.common;
-    let (embree, context) = open(common)?;
-    let begin = Instant::now();
-    let builder = GridBuilder::new(&context)?;
-    let pipelines_ms = begin.elapsed().as_secs_f64() * 1e3;
-    let (record_build_us, record_trace_us) = record::measure(&context, builder.tracer()?)?;
+    let rivals = Rivals::open(common, threads(common), quality)?;
     let info = context.device_info();
-    let mut report = Report {
-        schema: 1,
+    let setup = Setup {
+        schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         device: info.name.clone(),
         driver: format!("{} {}", info.driver_name, info.driver_info),
         device_is_cpu: context.is_cpu(),
-        pipelines_ms,
-        record_build_us,
-        record_trace_us,
-        embree: embree.as_ref().map(|embree| rival(embree, &format!("{:?}", arguments.embree_quality).to_lowercase())),
-        runs: arguments.runs,
-        scenes: Vec::new(),
+        rivals: rivals.list(),
+        size: common.size.next_multiple_of(8),
+        runs,
     };
+    Ok((context, rivals, setup))
+}
+
+fn run(arguments: &Arguments) -> Result<Report> {
+    let common = &arguments.common;
+    let (context, rivals, setup) = open(common, arguments.embree_quality, arguments.runs)?;
+    let begin = Instant::now();
+    let builder = GridBuilder::new(&context)?;
+    let pipelines_ms = begin.elapsed().as_secs_f64() * 1e3;
+    let (record_build_us, record_trace_us) = record::measure(&context, builder.tracer()?)?;
+    let mut report = Report { setup, pipelines_ms, record_build_us, record_trace_us, scenes: Vec::new(), means: Vec::new() };
     let folders = scenes::folders(&common.folder);
-    let default = ["bumpy:70000".to_owned()];
-    let specs = if arguments.scenes.is_empty() { &default } else { arguments.scenes.as_slice() };
-    for spec in specs {
+    for spec in scenes::expand(&arguments.scenes) {
         eprintln!("gridwalk-bench: {spec}");
-        let loaded = scenes::load(spec, &folders, common.seed)?;
-        report.scenes.push(measure::measure(&builder, embree.as_ref(), arguments, &loaded).with_context(|| spec.clone())?);
+        let loaded = scenes::load(&spec, &folders, common.seed)?;
+        report.scenes.push(measure::measure(&builder, &rivals, arguments, &loaded).with_context(|| spec.clone())?);
     }
+    report.means = report::means(&report.setup, &report.scenes, &scenes::FIVE);
     Ok(report)
 }
 
 fn run_dynamic(arguments: &Dynamic) -> Result<dynamic_report::Report> {
     let common = &arguments.common;
-    let (embree, context) = open(common)?;
-    let info = context.device_info();
-    let mut report = dynamic_report::Report {
-        schema: 1,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        device: info.name.clone(),
-        driver: format!("{} {}", info.driver_name, info.driver_info),
-        device_is_cpu: context.is_cpu(),
-        embree: embree.as_ref().map(|embree| rival(embree, "low")),
-        size: common.size.next_multiple_of(8),
-        runs: arguments.runs,
-        scenes: Vec::new(),
-    };
+    let (context, rivals, setup) = open(common, Quality::Medium, arguments.runs)?;
+    let mut report = dynamic_report::Report { setup, scenes: Vec::new() };
     let folders = scenes::folders(&common.folder);
     let default = ["bumpy:70000".to_owned()];
     let specs = if arguments.scenes.is_empty() { &default } else { arguments.scenes.as_slice() };
     for spec in specs {
         let moving = moving::open(spec, &folders, common.seed).with_context(|| spec.clone())?;
-        report.scenes.push(dynamic::measure(&context, embree.as_ref(), arguments, spec, moving).with_context(|| spec.clone())?);
+        report.scenes.push(dynamic::measure(&context, &rivals, arguments, spec, moving).with_context(|| spec.clone())?);
     }
     Ok(report)
 }
@@ -208,36 +196,44 @@ mod tests {
     #[test]
     fn a_small_run_makes_a_table_and_json() {
         for (words, has_rival) in
-            [(&["bumpy:500", "soup:300", "--overlap", "exact"][..], None), (&["bumpy:300", "--no-embree"], Some(false))]
+            [(&["bumpy:500", "soup:300", "stadium:400", "--overlap", "exact"][..], None), (&["bumpy:300", "--no-embree"], Some(false))]
         {
             let report = run(&arguments(words)).unwrap();
-            let has_rival = has_rival.unwrap_or(report.embree.is_some());
-            assert_eq!(report.embree.is_some(), has_rival);
+            let rivals = report.setup.rivals.len();
+            assert!(has_rival.is_none_or(|has_rival| has_rival == (rivals > 0)));
             let table = report.table(None);
             assert!(table.contains("rebuild") && table.contains("sort_scatter"), "{table}");
             assert!(!report.table(Some("sort_")).contains("overlap_count"));
-            if let Some(picture) = plot::svg(&report) {
-                assert_eq!(picture.matches("<rect x").count(), 6 * report.scenes.len(), "{picture}");
+            assert_eq!(plot::bars(&report).is_some(), rivals > 0);
+            if let Some(picture) = plot::bars(&report) {
+                let objects = report.scenes.iter().filter(|scene| scene.scene.starts_with("stadium")).count();
+                assert_eq!(picture.matches("<rect x").count(), rivals * (7 * report.scenes.len() + objects), "{picture}");
             }
-            assert_eq!(plot::svg(&report).is_some(), has_rival);
             let changes = compare::changes(&report, &report);
             assert!(changes.contains("within the noise") && !changes.contains("slower"), "{changes}");
             let again: Report = serde_json::from_str(&serde_json::to_string(&report).unwrap()).unwrap();
+            assert_eq!(again.means.len(), rivals * report.scenes.iter().map(|scene| scene.rays.len() + 2).max().unwrap());
             for scene in &again.scenes {
                 assert!(scene.pairs > 0 && !scene.steps.is_empty());
-                let kinds: Vec<&str> = scene.rays.iter().map(|rays| rays.kind.as_str()).collect();
-                assert_eq!(kinds, ["camera", "shadow", "reflection", "diffuse", "any"]);
+                let mut wanted = vec!["rebuild", "frame", "camera", "shadow", "reflection", "diffuse", "any"];
+                wanted.extend(scene.scene.starts_with("stadium").then_some("object"));
+                assert_eq!(scene.figures().map(|(name, _)| name).collect::<Vec<_>>(), wanted);
+                assert!(scene.figures().all(|(_, comparison)| comparison.rivals.len() == rivals && comparison.ours.median_ms > 0.0));
+                let frame = scene.frame.as_ref().unwrap();
+                assert!(frame.rivals.len() == rivals && frame.ours.kind_ms("camera") > 0.0 && frame.ours.kind_ms("shadow") > 0.0);
                 for rays in &scene.rays {
-                    assert!(rays.rays == 64 * 64 || matches!(rays.kind.as_str(), "shadow" | "reflection"));
+                    assert!(rays.rays == 64 * 64 || matches!(rays.kind.as_str(), "shadow" | "reflection" | "object"));
                     assert!((1..=64 * 64).contains(&rays.rays));
                     assert!(rays.hits > 0, "{}: no {} ray hits", scene.scene, rays.kind);
-                    assert_eq!(rays.difference.is_some(), has_rival);
+                    assert_eq!((rays.alone.is_some(), rays.differences.len()), (rays.kind == "object", rivals));
                     // Two triangles that cross, or an edge seen edge-on, may be told differently.
                     assert!(
-                        rays.difference.as_ref().is_none_or(|difference| difference.nearer + difference.farther <= 2),
+                        rays.differences.iter().all(|difference| difference.rays > 0 && difference.nearer + difference.farther <= 2),
                         "{}: {rays:?}",
                         scene.scene
                     );
+                    // Whoever looks at the object sees it, whatever stands around it.
+                    assert!(rays.kind != "object" || rays.hits == rays.rays);
                 }
             }
         }
@@ -246,6 +242,19 @@ mod tests {
     #[test]
     fn parts_that_are_not_asked_for_are_not_measured() {
         let report = run(&arguments(&["sphere:200", "--no-embree", "--only", "any"])).unwrap();
-        assert!(report.scenes[0].rebuild.is_none() && report.scenes[0].rays.len() == 1);
+        assert_eq!(report.scenes[0].figures().map(|(name, _)| name).collect::<Vec<_>>(), ["any"]);
+    }
+
+    #[test]
+    fn figures_of_another_schema_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            format!("{:#}", read_report(&path).err().unwrap())
+        };
+        assert!(told("old.json", "{\"schema\": 1, \"scenes\": []}").contains("schema 1"));
+        assert!(told("other.json", "{}").contains("no figures of this benchmark"));
+        assert!(format!("{:#}", read_report(Path::new("nowhere.json")).err().unwrap()).contains("cannot be read"));
     }
 }

@@ -1,13 +1,21 @@
-//! One scene, measured: ours and the rival in turns.
+//! One scene, measured: ours and the rivals in turns.
+
+use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
 use gridwalk::{Capacity, Hit, Ray, UNFINISHED};
-use gridwalk_render::{BuildSettings, GpuScene, Grid, GridBuilder, RayBatch, StepTime};
+use gridwalk_render::{BuildSettings, GpuScene, Grid, GridBuilder, StepTime};
+use gridwalk_scene::{Camera, Mesh};
 
 use crate::arguments::{Arguments, Common, Overlap, Part};
-use crate::embree::{self, Embree};
+use crate::contender::{Answers, Contender, Query, Set, Tree, Turn, times, turns};
+use crate::ours::Ours;
 use crate::rays::{camera_rays, diffuse_rays};
-use crate::report::{Comparison, Difference, Example, RayReport, Run, SceneReport, Step, Times, median};
+use crate::report::{
+    Against, Comparison, Difference, Example, FrameReport, KindTime, RayReport, RivalBytes, RivalRuns, Run, SceneReport, Side, Step, View,
+    median,
+};
+use crate::rivals::Rivals;
 use crate::scenes::Loaded;
 use crate::surface::{Surface, Traced};
 
@@ -26,84 +34,102 @@ pub fn settings(arguments: &Common) -> BuildSettings {
     settings
 }
 
+/// Ours and the rivals, in the order of the report.
+pub struct Field<'a> {
+    pub ours: Ours<'a>,
+    pub rivals: Vec<Box<dyn Contender>>,
+}
+
+impl Field<'_> {
+    /// Prepares, loads or otherwise readies each.
+    ///
+    /// # Errors
+    /// What a contender reports.
+    pub fn each(&mut self, ready: impl FnMut(&mut dyn Contender) -> Result<()>) -> Result<()> {
+        self.all().into_iter().try_for_each(ready)
+    }
+
+    /// Makes one kind of tree; returns the bytes of each rival's.
+    fn prepare(&mut self, tree: Tree) -> Result<Vec<RivalBytes>> {
+        self.each(|contender| contender.prepare(tree))?;
+        let bytes = |rival: &dyn Contender| Some(RivalBytes { rival: rival.name().to_owned(), bytes: rival.bytes()? });
+        Ok(self.rivals.iter().filter_map(|rival| bytes(&**rival)).collect())
+    }
+
+    /// All of them, ours first.
+    pub fn all(&mut self) -> Vec<&mut dyn Contender> {
+        let rivals = self.rivals.iter_mut().map(|rival| &mut **rival as &mut dyn Contender);
+        std::iter::once(&mut self.ours as &mut dyn Contender).chain(rivals).collect()
+    }
+
+    /// Our runs, which come first, compared to the others.
+    fn compare(&self, runs: &[Vec<Run>], traces: bool) -> Comparison {
+        let rivals: Vec<RivalRuns<'_>> = self
+            .rivals
+            .iter()
+            .zip(runs.get(1..).unwrap_or_default())
+            .map(|(rival, runs)| RivalRuns { name: rival.name(), runs, is_sampled: traces && rival.is_sampled() })
+            .collect();
+        Comparison::of(runs.first().map_or(&[], Vec::as_slice), &rivals, self.ours.grid().context().is_cpu())
+    }
+}
+
 /// Measures what the arguments ask for.
 ///
 /// # Errors
-/// What the device or the rival reports.
-pub fn measure(builder: &GridBuilder, embree: Option<&Embree>, arguments: &Arguments, loaded: &Loaded) -> Result<SceneReport> {
+/// What the device or a rival reports.
+pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, loaded: &Loaded) -> Result<SceneReport> {
     let mesh = loaded.scene.meshes.first().context("a scene without a mesh")?;
     let gpu = GpuScene::upload(builder.context(), &loaded.scene)?;
-    let mut grid = builder.build(&gpu, &settings(&arguments.common))?;
-    let rival = match embree {
-        Some(embree) => {
-            let mesh = embree::Mesh::new(&mesh.positions, &mesh.indices).context("an index that leads nowhere")?;
-            Some((embree, mesh))
+    let settings = settings(&arguments.common);
+    let grid = builder.build(&gpu, &settings)?;
+    let mut field = Field { ours: Ours::still(grid, &gpu), rivals: rivals.contenders(&mesh.positions, &mesh.indices)? };
+
+    let runs = arguments.runs;
+    let mut sets = Sets::new(arguments, loaded, mesh);
+    let (mut rebuild, mut steps, mut frame) = (None, Vec::new(), None);
+    let (mut rebuilt_bytes, mut traced_bytes) = (Vec::new(), Vec::new());
+    if arguments.measures(Part::Rebuild) || arguments.measures(Part::Frame) {
+        rebuilt_bytes = field.prepare(Tree::Fast)?;
+        if arguments.measures(Part::Rebuild) {
+            let turns = turns(runs, &mut field.all(), |contender| contender.rebuild())?;
+            steps = median_steps(&field.ours.take_steps());
+            rebuild = Some(field.compare(&times(&turns), false));
         }
-        None => None,
-    };
-
-    let mut steps: Vec<Vec<StepTime>> = Vec::new();
-    let mut rebuild = None;
-    if arguments.measures(Part::Rebuild) {
-        let mut theirs = match &rival {
-            Some((embree, mesh)) => Some(embree.rebuildable(mesh)?),
-            None => None,
-        };
-        let ours = || {
-            grid.rebuild(&gpu)?;
-            steps.push(grid.stats().steps.clone());
-            Ok(grid.stats().ms)
-        };
-        let times = turns(arguments.runs, ours, || theirs.as_mut().map(embree::Scene::rebuild).transpose())?;
-        steps.remove(0);
-        rebuild = Some(times.compare(grid.context().is_cpu()));
+        if arguments.measures(Part::Frame) {
+            let sets = [sets.camera(), sets.shadow(field.ours.grid())?];
+            frame = Some(frames(&mut field, runs, &sets)?);
+        }
     }
-
     let mut rays = Vec::new();
-    let parts = [Part::Camera, Part::Shadow, Part::Reflection, Part::Diffuse, Part::Any].map(|part| arguments.measures(part));
-    if parts.contains(&true) {
-        let theirs = match &rival {
-            Some((embree, mesh)) => Some(embree.traceable(mesh, arguments.embree_quality)?),
-            None => None,
-        };
-        let [camera, shadow, reflection, diffuse, any] = parts;
-        if camera || shadow || reflection {
-            let set = camera_rays(&loaded.camera, arguments.common.size);
-            if camera {
-                rays.push(closest("camera", &grid, theirs.as_ref(), &set, arguments.runs)?);
-            }
-            let surface = Surface::new(mesh);
-            let seen = Traced::new(&grid, set)?;
-            if shadow {
-                let set = surface.shadows(&seen, loaded.scene.lights.first().copied());
-                rays.push(any_hit("shadow", &grid, theirs.as_ref(), &set, arguments.runs)?);
-            }
-            if reflection {
-                rays.push(closest("reflection", &grid, theirs.as_ref(), &surface.reflections(&seen), arguments.runs)?);
-            }
+    for set in sets.wanted(field.ours.grid())? {
+        if rays.is_empty() {
+            traced_bytes = field.prepare(Tree::Best)?;
         }
-        if diffuse || any {
-            let size = arguments.common.size.next_multiple_of(8);
-            let set = diffuse_rays(mesh, size * size, arguments.common.seed);
-            if diffuse {
-                rays.push(closest("diffuse", &grid, theirs.as_ref(), &set, arguments.runs)?);
-            }
-            if any {
-                rays.push(any_hit("any", &grid, theirs.as_ref(), &set, arguments.runs)?);
-            }
+        rays.push(trace(&mut field, runs, &set, None)?);
+    }
+    if let Some((object, camera)) = loaded.object.as_ref().filter(|_| arguments.measures(Part::Object)) {
+        if rays.is_empty() {
+            traced_bytes = field.prepare(Tree::Best)?;
         }
+        let gpu = GpuScene::upload(builder.context(), object)?;
+        let alone = Ours::still(builder.build(&gpu, &settings)?, &gpu);
+        let set = looking(camera, arguments.common.size, alone.grid())?;
+        rays.push(trace(&mut field, runs, &set, Some(alone))?);
     }
 
-    let stats = grid.stats();
+    let stats = field.ours.grid().stats();
     let report = &stats.report;
     let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs: report.pair_total };
-    let fitted = grid.tracer()?.build_sizes(&fitted).map_err(gridwalk_render::Error::from)?;
+    let fitted = field.ours.grid().tracer()?.build_sizes(&fitted).map_err(gridwalk_render::Error::from)?;
+    let camera = &loaded.camera;
     Ok(SceneReport {
         scene: loaded.name.clone(),
+        view: View { eye: camera.eye, target: camera.target, fov_degrees: camera.vertical_fov_degrees },
         triangles: report.triangles,
         dropped: report.dropped,
         density: report.density,
-        overlap: format!("{:?}", grid.settings().overlap).to_lowercase(),
+        overlap: format!("{:?}", field.ours.grid().settings().overlap).to_lowercase(),
         resolution: report.resolution,
         cells: report.cells,
         cells_in_use: report.cells_in_use,
@@ -113,10 +139,101 @@ pub fn measure(builder: &GridBuilder, embree: Option<&Embree>, arguments: &Argum
         grid_bytes: stats.grid_bytes,
         scratch_bytes: stats.scratch_bytes,
         fitted_bytes: fitted.grid.size + fitted.scratch.size,
+        rebuilt_bytes,
+        traced_bytes,
         rebuild,
-        steps: median_steps(&steps),
+        steps,
+        frame,
         rays,
     })
+}
+
+/// The rays of a scene, each set made when it is first asked for.
+struct Sets<'a> {
+    arguments: &'a Arguments,
+    loaded: &'a Loaded,
+    mesh: &'a Mesh,
+    camera: Option<Arc<Set>>,
+    /// What the camera rays have hit.
+    seen: Option<(Surface, Traced)>,
+    shadow: Option<Arc<Set>>,
+}
+
+impl<'a> Sets<'a> {
+    fn new(arguments: &'a Arguments, loaded: &'a Loaded, mesh: &'a Mesh) -> Sets<'a> {
+        Sets { arguments, loaded, mesh, camera: None, seen: None, shadow: None }
+    }
+
+    fn camera(&mut self) -> Arc<Set> {
+        let rays = || camera_rays(&self.loaded.camera, self.arguments.common.size);
+        Arc::clone(self.camera.get_or_insert_with(|| closest("camera", rays())))
+    }
+
+    fn seen(&mut self, grid: &Grid) -> Result<&(Surface, Traced)> {
+        if self.seen.is_none() {
+            let camera = self.camera();
+            self.seen = Some((Surface::new(self.mesh), Traced::new(grid, camera.rays.clone())?));
+        }
+        self.seen.as_ref().context("nothing was traced")
+    }
+
+    fn shadow(&mut self, grid: &Grid) -> Result<Arc<Set>> {
+        if let Some(set) = &self.shadow {
+            return Ok(Arc::clone(set));
+        }
+        let light = self.loaded.scene.lights.first().copied();
+        let (surface, seen) = self.seen(grid)?;
+        let set = any_hit("shadow", surface.shadows(seen, light));
+        self.shadow = Some(Arc::clone(&set));
+        Ok(set)
+    }
+
+    /// Those that are asked for, but `object`.
+    fn wanted(&mut self, grid: &Grid) -> Result<Vec<Arc<Set>>> {
+        let measures = |part| self.arguments.measures(part);
+        let [camera, shadow, reflection, diffuse, any] =
+            [Part::Camera, Part::Shadow, Part::Reflection, Part::Diffuse, Part::Any].map(measures);
+        let mut sets = Vec::new();
+        if camera {
+            sets.push(self.camera());
+        }
+        if shadow {
+            sets.push(self.shadow(grid)?);
+        }
+        if reflection {
+            let (surface, seen) = self.seen(grid)?;
+            sets.push(closest("reflection", surface.reflections(seen)));
+        }
+        if diffuse || any {
+            let Common { size, seed, .. } = self.arguments.common;
+            let size = size.next_multiple_of(8);
+            let rays = diffuse_rays(self.mesh, size * size, seed);
+            if diffuse {
+                sets.push(closest("diffuse", rays.clone()));
+            }
+            if any {
+                sets.push(any_hit("any", rays));
+            }
+        }
+        Ok(sets)
+    }
+}
+
+/// Camera rays that hit an object while it is all that there is.
+fn looking(camera: &Camera, size: u32, alone: &Grid) -> Result<Arc<Set>> {
+    let traced = Traced::new(alone, camera_rays(camera, size))?;
+    let hits = traced.rays.iter().zip(&traced.hits).filter(|(_, hit)| hit.is_hit());
+    Ok(closest("object", hits.map(|(ray, _)| *ray).collect()))
+}
+
+/// Rays whose closest hits are wanted.
+pub fn closest(kind: &'static str, rays: Vec<Ray>) -> Arc<Set> {
+    Arc::new(Set { kind, query: Query::Closest, rays })
+}
+
+/// Rays of which it is asked whether they hit anything.
+pub fn any_hit(kind: &'static str, rays: Vec<Ray>) -> Arc<Set> {
+    Arc::new(Set { kind, query: Query::Any, rays })
 }
 
 /// Median of each step over the runs, all of which have the same steps in the same order.
@@ -124,109 +241,94 @@ pub fn median_steps(runs: &[Vec<StepTime>]) -> Vec<Step> {
     let Some(first) = runs.first() else { return Vec::new() };
     let steps = first.iter().enumerate().map(|(index, step)| {
         let ms = median(runs.iter().filter_map(|run| run.get(index)).map(|step| step.ms));
-        Step { name: step.name.to_owned(), kind: step.kind.to_owned(), count: step.count, ms }
+        Step { ms, ..Step::of(step) }
     });
     steps.collect()
 }
 
-fn closest(kind: &str, grid: &Grid, theirs: Option<&embree::Scene>, rays: &[Ray], runs: u32) -> Result<RayReport> {
-    let mut batch = RayBatch::new(grid.context(), rays)?;
-    let mut their_hits = vec![Hit::MISS; rays.len()];
-    let times = turns(runs, || Ok(batch.closest_hit(grid)?), || Ok(theirs.map(|scene| scene.closest_hit(rays, &mut their_hits))))?;
-    let hits = batch.read_hits()?;
-    let difference = theirs.map(|_| difference(rays, &hits, &their_hits));
+/// What one frame took.
+pub struct Frame {
+    rebuild_ms: f64,
+    /// Of each set.
+    rays_ms: Vec<f64>,
+}
+
+impl Frame {
+    /// Rebuilds, and traces this many sets, each scaled by its factor.
+    ///
+    /// # Errors
+    /// What the contender reports.
+    pub fn run(contender: &mut dyn Contender, scales: &[f64]) -> Result<Frame> {
+        let rebuild_ms = contender.rebuild()?;
+        let rays_ms = scales.iter().enumerate().map(|(set, scale)| Ok(contender.trace(set)? * scale)).collect::<Result<_>>()?;
+        Ok(Frame { rebuild_ms, rays_ms })
+    }
+
+    /// Medians of all parts.
+    pub fn side(name: &str, sets: &[Arc<Set>], frames: &[Turn<Frame>]) -> Side {
+        let rays = sets.iter().enumerate().map(|(index, set)| {
+            let ms = median(frames.iter().filter_map(|frame| frame.value.rays_ms.get(index).copied()));
+            KindTime { kind: set.kind.to_owned(), ms }
+        });
+        Side { name: name.to_owned(), rebuild_ms: median(frames.iter().map(|frame| frame.value.rebuild_ms)), rays: rays.collect() }
+    }
+}
+
+/// Rays of each kind that a frame is reckoned with, whatever the size of the picture and however many of its rays hit something.
+const FRAME_RAYS: f64 = (1 << 20) as f64;
+
+fn frames(field: &mut Field<'_>, runs: u32, sets: &[Arc<Set>]) -> Result<FrameReport> {
+    field.each(|contender| contender.load(sets))?;
+    let scales: Vec<f64> = sets.iter().map(|set| FRAME_RAYS / set.rays.len().max(1) as f64).collect();
+    let turns = turns(runs, &mut field.all(), |contender| Frame::run(contender, &scales))?;
+    let run =
+        |turn: &Turn<Frame>| Run { ms: turn.value.rebuild_ms + turn.value.rays_ms.iter().sum::<f64>(), processor_ms: turn.processor_ms };
+    let runs: Vec<Vec<Run>> = turns.iter().map(|turns| turns.iter().map(run).collect()).collect();
+    let time = field.compare(&runs, true);
+    let names: Vec<&str> = field.all().iter().map(|contender| contender.name()).collect();
+    let mut sides = names.into_iter().zip(&turns).map(|(name, turns)| Frame::side(name, sets, turns));
+    Ok(FrameReport { time, ours: sides.next().unwrap_or_default(), rivals: sides.collect() })
+}
+
+/// Traces one set; `alone` too, which is no rival.
+fn trace(field: &mut Field<'_>, runs: u32, set: &Arc<Set>, mut alone: Option<Ours<'_>>) -> Result<RayReport> {
+    let sets = std::slice::from_ref(set);
+    field.each(|contender| contender.load(sets))?;
+    alone.iter_mut().try_for_each(|alone| alone.load(sets))?;
+    let mut all = field.all();
+    all.extend(alone.iter_mut().map(|alone| alone as &mut dyn Contender));
+    let turns = turns(runs, &mut all, |contender| contender.trace(0))?;
+    let mut runs = times(&turns);
+    let alone = alone.and_then(|_| runs.pop());
+    let time = field.compare(&runs, true);
+    let hits = field.ours.answers(0)?.hits;
+    let differences = field.rivals.iter_mut().map(|rival| Ok(difference(rival.name(), &set.rays, &hits, &rival.answers(0)?)));
+    let differences = differences.collect::<Result<Vec<Difference>>>()?;
     let count = |wanted: fn(&Hit) -> bool| hits.iter().filter(|hit| wanted(hit)).count() as u64;
-    Ok(ray_report(
-        kind,
-        rays.len(),
-        count(Hit::is_hit),
-        count(|hit| hit.triangle == UNFINISHED),
-        times.compare(grid.context().is_cpu()),
-        difference,
-    ))
-}
-
-fn any_hit(kind: &str, grid: &Grid, theirs: Option<&embree::Scene>, rays: &[Ray], runs: u32) -> Result<RayReport> {
-    let mut batch = RayBatch::new(grid.context(), rays)?;
-    let mut their_answers = vec![0; rays.len()];
-    let times = turns(runs, || Ok(batch.any_hit(grid)?), || Ok(theirs.map(|scene| scene.any_hit(rays, &mut their_answers))))?;
-    let answers = batch.read_occluded()?;
-    // A hit is nearer than none.
-    let as_hits = |answers: &[u32]| -> Vec<Hit> {
-        let hit = |&answer: &u32| match answer {
-            0 => Hit::MISS,
-            UNFINISHED => Hit { triangle: UNFINISHED, ..Hit::MISS },
-            _ => Hit { t: 0.0, u: 0.0, v: 0.0, triangle: 0 },
-        };
-        answers.iter().map(hit).collect()
-    };
-    let difference = theirs.map(|_| difference(rays, &as_hits(&answers), &as_hits(&their_answers)));
-    let count = |wanted: u32| answers.iter().filter(|&&answer| answer == wanted).count() as u64;
-    Ok(ray_report(kind, rays.len(), count(1), count(UNFINISHED), times.compare(grid.context().is_cpu()), difference))
-}
-
-/// Milliseconds of ours and theirs, run in turns, the first turn left out.
-fn turns(runs: u32, mut ours: impl FnMut() -> Result<f64>, mut theirs: impl FnMut() -> Result<Option<f64>>) -> Result<Turns> {
-    let mut turns = Turns { ours: Vec::new(), theirs: Vec::new() };
-    for run in 0..=runs {
-        let begin = processor_ms();
-        let ours = Run { ms: ours()?, processor_ms: processor_ms() - begin };
-        let begin = processor_ms();
-        let theirs = theirs()?.map(|ms| Run { ms, processor_ms: processor_ms() - begin });
-        if run > 0 {
-            turns.ours.push(ours);
-            turns.theirs.extend(theirs);
-        }
-    }
-    Ok(turns)
-}
-
-/// Processor time of all threads of this program so far, those that have ended included; not a number on systems without such a clock.
-#[cfg(not(unix))]
-fn processor_ms() -> f64 {
-    f64::NAN
-}
-
-/// Processor time of all threads of this program so far, those that have ended included.
-#[cfg(unix)]
-fn processor_ms() -> f64 {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-    time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
-}
-
-/// What the runs took.
-struct Turns {
-    ours: Vec<Run>,
-    theirs: Vec<Run>,
-}
-
-impl Turns {
-    fn compare(&self, device_is_cpu: bool) -> Comparison {
-        Comparison::of(&self.ours, &self.theirs, device_is_cpu)
-    }
-}
-
-fn ray_report(kind: &str, rays: usize, hits: u64, unfinished: u64, time: Comparison, difference: Option<Difference>) -> RayReport {
-    let rate = |times: Times| if times.median_ms > 0.0 { rays as f64 / times.median_ms * 1e-3 } else { 0.0 };
-    RayReport {
-        kind: kind.to_owned(),
-        rays: rays as u64,
-        hits,
-        unfinished,
-        mrays: rate(time.ours),
-        embree_mrays: time.embree.map(rate),
+    let rays = set.rays.len() as u64;
+    let is_cpu = field.ours.grid().context().is_cpu();
+    Ok(RayReport {
+        kind: set.kind.to_owned(),
+        rays,
+        hits: count(Hit::is_hit),
+        unfinished: count(|hit| hit.triangle == UNFINISHED),
+        mrays: time.ours.mrays(rays),
+        alone: alone.map(|runs| Against::of(&time.ours, &RivalRuns { name: "the object alone", runs: &runs, is_sampled: false }, is_cpu)),
         time,
-        difference,
-    }
+        differences,
+    })
 }
 
 /// Rays that are listed as examples of a difference.
 const EXAMPLES: usize = 16;
 
-/// Counts how hits differ.
-pub fn difference(rays: &[Ray], ours: &[Hit], theirs: &[Hit]) -> Difference {
-    let mut difference = Difference::default();
-    for (index, (ours, theirs)) in ours.iter().zip(theirs).enumerate() {
+/// Counts how hits differ from a rival's.
+pub fn difference(rival: &str, rays: &[Ray], ours: &[Hit], theirs: &Answers) -> Difference {
+    let mut difference = Difference { rival: rival.to_owned(), ..Difference::default() };
+    let step = theirs.step.max(1);
+    let pairs = rays.iter().zip(ours).enumerate().step_by(step).zip(&theirs.hits);
+    for ((index, (ray, ours)), theirs) in pairs {
+        difference.rays += 1;
         if ours.triangle == theirs.triangle {
             difference.distance = difference.distance.max(if ours.is_hit() { (ours.t - theirs.t).abs() } else { 0.0 });
             continue;
@@ -238,14 +340,14 @@ pub fn difference(rays: &[Ray], ours: &[Hit], theirs: &[Hit]) -> Difference {
         }
         let is_nearer = ours.t < theirs.t && ours.triangle != UNFINISHED;
         *(if is_nearer { &mut difference.nearer } else { &mut difference.farther }) += 1;
-        if let Some(ray) = rays.get(index).filter(|_| difference.examples.len() < EXAMPLES) {
+        if difference.examples.len() < EXAMPLES {
             let answer = |hit: &Hit| hit.is_hit().then_some((hit.t, hit.triangle));
             difference.examples.push(Example {
                 ray: index as u64,
                 origin: ray.origin,
                 direction: ray.direction,
                 ours: answer(ours),
-                embree: answer(theirs),
+                theirs: answer(theirs),
             });
         }
     }
@@ -262,19 +364,16 @@ mod tests {
         let rays = [Ray { origin: [0.0; 3], t_min: 0.0, direction: [1.0; 3], t_max: 9.0 }; 7];
         let lost = Hit { triangle: UNFINISHED, ..Hit::MISS };
         let ours = [hit(1.25, 1), hit(1.0, 1), hit(1.0, 1), Hit::MISS, Hit::MISS, lost, hit(2.0, 3)];
-        let theirs = [hit(1.0, 1), hit(1.000_01, 2), hit(1.01, 4), Hit::MISS, hit(3.0, 0), Hit::MISS, Hit::MISS];
-        let found = difference(&rays, &ours, &theirs);
-        assert_eq!((found.triangle, found.nearer, found.farther, found.distance), (1, 2, 2, 0.25));
+        let theirs = vec![hit(1.0, 1), hit(1.000_01, 2), hit(1.01, 4), Hit::MISS, hit(3.0, 0), Hit::MISS, Hit::MISS];
+        let found = difference("them", &rays, &ours, &Answers { hits: theirs.clone(), step: 1 });
+        assert_eq!((found.rays, found.triangle, found.nearer, found.farther, found.distance), (7, 1, 2, 2, 0.25));
         assert_eq!(found.examples.iter().map(|example| example.ray).collect::<Vec<_>>(), [2, 4, 5, 6]);
-        assert_eq!(found.examples[1].embree, Some((3.0, 0)));
-        assert_eq!(difference(&rays, &ours[..5], &ours[..5]), Difference::default());
-    }
-
-    #[test]
-    fn the_first_turn_is_left_out() {
-        let mut times = [5.0, 1.0, 2.0].into_iter();
-        let turns = turns(2, || times.next().context("one turn too many"), || Ok(None)).unwrap();
-        assert_eq!(turns.ours.iter().map(|run| run.ms).collect::<Vec<_>>(), [1.0, 2.0]);
-        assert!(turns.theirs.is_empty() && turns.ours.iter().all(|run| run.processor_ms >= 0.0));
+        assert_eq!(found.examples[1].theirs, Some((3.0, 0)));
+        let same = difference("us", &rays, &ours[..5], &Answers { hits: ours[..5].to_vec(), step: 1 });
+        assert_eq!(same, Difference { rival: "us".to_owned(), rays: 5, ..Difference::default() });
+        // Every third ray alone.
+        let some = difference("them", &rays, &ours, &Answers { hits: vec![theirs[0], theirs[3], theirs[6]], step: 3 });
+        assert_eq!((some.rays, some.nearer, some.farther), (3, 1, 0));
+        assert_eq!(some.examples[0].ray, 6);
     }
 }

@@ -51,7 +51,7 @@ pub fn open(spec: &str, folders: &[PathBuf], seed: u64) -> Result<Moving> {
     if let Some((shape, count)) = spec.split_once(':')
         && let Some(scene) = scenes::make(shape, count, seed)
     {
-        return swaying(&scenes::merged(&scene?));
+        return swaying(&scenes::merged(&scene?.scene));
     }
     let Some(known) = KNOWN.iter().find(|known| known.name == spec) else {
         return Ok(Moving { animation: read(Path::new(spec))?, folder: None });

@@ -2,91 +2,105 @@
 
 use std::fmt::Write as _;
 
-use crate::report::{Report, number};
+use crate::report::{Comparison, Report, Rival};
+use crate::table::number;
 
 const BAR: f64 = 14.0;
 const GAP: f64 = 12.0;
 const LABELS: f64 = 210.0;
 const DECADE: f64 = 200.0;
-const TOP: f64 = 58.0;
 /// Colours that the colour-blind tell apart (Okabe and Ito 2008), one a kind of figure.
-const COLOURS: [(&str, &str); 6] = [
+const COLOURS: [(&str, &str); 8] = [
     ("rebuild", "#0072B2"),
+    ("frame", "#000000"),
     ("camera", "#E69F00"),
     ("shadow", "#56B4E9"),
     ("reflection", "#009E73"),
     ("diffuse", "#D55E00"),
     ("any", "#CC79A7"),
+    ("object", "#F0E442"),
 ];
 
-/// A scene's ratios, by name.
-fn ratios(report: &Report) -> Vec<(&str, Vec<(&str, f64)>)> {
+/// A picture in the making.
+struct Picture(String);
+
+impl Picture {
+    fn text(&mut self, x: f64, y: f64, anchor: &str, words: &str) {
+        let words = words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{words}</text>");
+    }
+
+    fn bar(&mut self, x: f64, y: f64, width: f64, colour: &str) {
+        let height = BAR - 3.0;
+        let _ = writeln!(self.0, "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"/>");
+    }
+
+    fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: &str) {
+        let ([x1, y1], [x2, y2]) = (from, to);
+        let _ = writeln!(self.0, "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{colour}\"/>");
+    }
+
+    fn finish(self, width: f64, height: f64) -> String {
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" font-family=\"sans-serif\" \
+             font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
+            self.0
+        )
+    }
+}
+
+fn colour(figure: &str) -> &'static str {
+    COLOURS.iter().find(|(known, _)| *known == figure).map_or("#000000", |(_, colour)| colour)
+}
+
+/// A scene's ratios to a rival, by name.
+fn ratios<'a>(report: &'a Report, rival: &'a Rival) -> Vec<(&'a str, Vec<(&'a str, f64)>)> {
     let scenes = report.scenes.iter().map(|scene| {
-        let rebuild = scene.rebuild.iter().map(|time| ("rebuild", time.ratio));
-        let figures = rebuild.chain(scene.rays.iter().map(|rays| (rays.kind.as_str(), rays.time.ratio)));
-        let known = figures.filter_map(|(name, ratio)| Some((name, ratio.filter(|ratio| *ratio > 0.0)?)));
+        let ratio = |comparison: &Comparison| comparison.against(&rival.name)?.ratio.filter(|ratio| *ratio > 0.0);
+        let known = scene.figures().filter_map(|(name, comparison)| Some((name, ratio(comparison)?)));
         (scene.scene.as_str(), known.collect::<Vec<_>>())
     });
     scenes.filter(|(_, figures)| !figures.is_empty()).collect()
 }
 
-/// The picture; `None` without a rival.
-pub fn svg(report: &Report) -> Option<String> {
-    let rival = report.embree.as_ref()?;
-    let scenes = ratios(report);
-    let all = || scenes.iter().flat_map(|(_, figures)| figures.iter().map(|(_, ratio)| *ratio));
+/// The picture: a block of bars a rival; `None` without one.
+pub fn bars(report: &Report) -> Option<String> {
+    let rivals: Vec<_> = report.setup.rivals.iter().map(|rival| (rival, ratios(report, rival))).collect();
+    if rivals.is_empty() {
+        return None;
+    }
+    let all = || rivals.iter().flat_map(|(_, scenes)| scenes).flat_map(|(_, figures)| figures.iter().map(|(_, ratio)| *ratio));
     // Whole decades, with the line of equality in or at the edge of the picture.
     let first = all().fold(1.0, f64::min).log10().floor();
     let last = all().fold(1.0, f64::max).log10().ceil().max(first + 1.0);
     let x = |ratio: f64| LABELS + (ratio.log10() - first) * DECADE;
-    let height = scenes.iter().fold(TOP, |height, (_, figures)| height + figures.len() as f64 * BAR + GAP) + 24.0;
-    let width = x(10_f64.powf(last)) + 60.0;
 
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" font-family=\"sans-serif\" \
-         font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-    );
-    let mut text = |x: f64, y: f64, anchor: &str, words: &str| {
-        let words = words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        // Writing to a string cannot fail.
-        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{words}</text>");
-    };
-    text(8.0, 18.0, "start", &format!("{} ({})", report.device, report.driver));
-    let title = format!("times as fast as Embree {} with {} threads; to the right of 1: faster", rival.version, rival.threads);
-    text(8.0, 34.0, "start", &title);
-    for decade in first as i32..=last as i32 {
-        text(x(10_f64.powi(decade)), TOP - 8.0, "middle", &number(Some(10_f64.powi(decade))));
-    }
-    let mut y = TOP;
-    for (scene, figures) in &scenes {
-        text(8.0, y + BAR - 3.0, "start", scene);
-        for (name, ratio) in figures {
-            text(LABELS - 6.0, y + BAR - 3.0, "end", name);
-            text(x(*ratio) + 4.0, y + BAR - 3.0, "start", &number(Some(*ratio)));
-            y += BAR;
+    let mut picture = Picture(String::new());
+    picture.text(8.0, 18.0, "start", &format!("{} ({})", report.setup.device, report.setup.driver));
+    let mut y = 18.0;
+    for (rival, scenes) in &rivals {
+        y += 24.0;
+        let threads = rival.threads.map_or(String::new(), |threads| format!(" with {threads} threads"));
+        let title = format!("times as fast as {} {}{threads}; to the right of 1: faster", rival.name, rival.version);
+        picture.text(8.0, y, "start", &title);
+        y += 24.0;
+        let top = y;
+        for (scene, figures) in scenes {
+            picture.text(8.0, y + BAR - 3.0, "start", scene);
+            for (name, ratio) in figures {
+                picture.text(LABELS - 6.0, y + BAR - 3.0, "end", name);
+                picture.text(x(*ratio) + 4.0, y + BAR - 3.0, "start", &number(Some(*ratio)));
+                picture.bar(LABELS, y + 2.0, x(*ratio) - LABELS, colour(name));
+                y += BAR;
+            }
+            y += GAP;
         }
-        y += GAP;
-    }
-    let mut y = TOP;
-    for (_, figures) in &scenes {
-        for (name, ratio) in figures {
-            let colour = COLOURS.iter().find(|(known, _)| known == name).map_or("#000000", |(_, colour)| colour);
-            let _ = writeln!(
-                svg,
-                "<rect x=\"{LABELS:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{colour}\"/>",
-                y + 2.0,
-                x(*ratio) - LABELS,
-                BAR - 3.0
-            );
-            y += BAR;
+        for decade in first as i32..=last as i32 {
+            let x = x(10_f64.powi(decade));
+            picture.text(x, top - 8.0, "middle", &number(Some(10_f64.powi(decade))));
+            picture.line([x, top - 4.0], [x, y], if decade == 0 { "black" } else { "#bbbbbb" });
         }
-        y += GAP;
     }
-    for decade in first as i32..=last as i32 {
-        let colour = if decade == 0 { "black" } else { "#bbbbbb" };
-        let x = x(10_f64.powi(decade));
-        let _ = writeln!(svg, "<line x1=\"{x:.1}\" y1=\"{:.1}\" x2=\"{x:.1}\" y2=\"{y:.1}\" stroke=\"{colour}\"/>", TOP - 4.0);
-    }
-    svg += "</svg>\n";
-    Some(svg)
+    Some(picture.finish(x(10_f64.powf(last)) + 60.0, y + 24.0))
 }

@@ -1,13 +1,14 @@
-//! The figures: JSON, and the table made of them.
-
-use std::fmt::Write as _;
+//! The figures of a run, as JSON has them.
 
 use serde::{Deserialize, Serialize};
 
-/// What a whole run of the program found. Times are milliseconds, rates millions of rays a second.
+/// Version of the schema that is written, and the only one that is read.
+pub const SCHEMA: u32 = 2;
+
+/// What was measured on, and against whom.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Report {
-    /// Version of this schema.
+pub struct Setup {
+    /// Version of this schema: [`SCHEMA`].
     pub schema: u32,
     /// Version of gridwalk.
     pub version: String,
@@ -17,33 +18,45 @@ pub struct Report {
     pub driver: String,
     /// Whether it is a CPU.
     pub device_is_cpu: bool,
+    /// Who was measured besides.
+    pub rivals: Vec<Rival>,
+    /// Width and height of the camera's picture.
+    pub size: u32,
+    /// Runs after the warm-up.
+    pub runs: u32,
+}
+
+/// What a whole run of the program found. Times are milliseconds, rates millions of rays a second.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Report {
+    /// What was measured on, and against whom.
+    #[serde(flatten)]
+    pub setup: Setup,
     /// Milliseconds to make the library's pipelines.
     pub pipelines_ms: f64,
     /// Median of the microseconds to record a build into a command buffer.
-    #[serde(default)]
     pub record_build_us: f64,
     /// Likewise a trace of closest hits.
-    #[serde(default)]
     pub record_trace_us: f64,
-    /// The rival; none where it is not installed.
-    pub embree: Option<Rival>,
-    /// Runs after the warm-up.
-    pub runs: u32,
     /// One entry a scene.
     pub scenes: Vec<SceneReport>,
+    /// Geometric means of the ratios over scenes.
+    pub means: Vec<Mean>,
 }
 
-/// The rival and how it was used.
+/// A rival and how it was used.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Rival {
-    /// Its version.
+    /// As the figures name it.
+    pub name: String,
+    /// Its version, and where it comes from.
     pub version: String,
-    /// The library.
-    pub library: String,
-    /// Its threads.
-    pub threads: u32,
-    /// Build quality of the tree that rays were traced through.
-    pub trace_quality: String,
+    /// Its threads; none where it runs on the device.
+    pub threads: Option<u32>,
+    /// How it rebuilds, and what the rays of whole frames go through.
+    pub rebuild: String,
+    /// What all other rays go through.
+    pub tree: String,
 }
 
 /// The figures of a scene.
@@ -51,6 +64,8 @@ pub struct Rival {
 pub struct SceneReport {
     /// As asked for.
     pub scene: String,
+    /// Whence it was seen.
+    pub view: View,
     /// Triangles.
     pub triangles: u32,
     /// Of them left out for a vertex that is not finite.
@@ -77,12 +92,38 @@ pub struct SceneReport {
     pub scratch_bytes: u64,
     /// Bytes of both, if sized for exactly the cells and pairs of this scene.
     pub fitted_bytes: u64,
+    /// Bytes of the rivals' trees that are rebuilt, with what building takes, where they are known.
+    pub rebuilt_bytes: Vec<RivalBytes>,
+    /// Likewise of those that are traced.
+    pub traced_bytes: Vec<RivalBytes>,
     /// Rebuilds; none if they were not asked for.
     pub rebuild: Option<Comparison>,
     /// Medians of the rebuild's steps, those of one kernel summed.
     pub steps: Vec<Step>,
+    /// Whole frames; none if they were not asked for.
+    pub frame: Option<FrameReport>,
     /// Rays, by kind.
     pub rays: Vec<RayReport>,
+}
+
+/// Memory of a rival.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RivalBytes {
+    /// Who.
+    pub rival: String,
+    /// How many.
+    pub bytes: u64,
+}
+
+/// A camera of square pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct View {
+    /// Where it stands.
+    pub eye: [f32; 3],
+    /// What is in the middle.
+    pub target: [f32; 3],
+    /// Angle of view.
+    pub fov_degrees: f32,
 }
 
 /// A step of the rebuild.
@@ -98,10 +139,65 @@ pub struct Step {
     pub ms: f64,
 }
 
+impl Step {
+    /// A step as it was measured once.
+    pub fn of(step: &gridwalk_render::StepTime) -> Step {
+        Step { name: step.name.to_owned(), kind: step.kind.to_owned(), count: step.count, ms: step.ms }
+    }
+}
+
+/// Frames: a rebuild from nothing, then rays through what it made, of rivals too.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct FrameReport {
+    /// The whole.
+    pub time: Comparison,
+    /// Ours, in parts.
+    pub ours: Side,
+    /// The rivals', likewise.
+    pub rivals: Vec<Side>,
+}
+
+/// What a frame took a contender: medians.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Side {
+    /// Who.
+    pub name: String,
+    /// From the triangles to what can be traced.
+    pub rebuild_ms: f64,
+    /// Each kind of rays.
+    pub rays: Vec<KindTime>,
+}
+
+/// Time of rays of a kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KindTime {
+    /// Which.
+    pub kind: String,
+    /// Milliseconds.
+    pub ms: f64,
+}
+
+impl Side {
+    /// All rays.
+    pub fn trace_ms(&self) -> f64 {
+        self.rays.iter().map(|rays| rays.ms).sum()
+    }
+
+    /// Rebuild and rays.
+    pub fn frame_ms(&self) -> f64 {
+        self.rebuild_ms + self.trace_ms()
+    }
+
+    /// Rays of one kind.
+    pub fn kind_ms(&self, kind: &str) -> f64 {
+        self.rays.iter().filter(|rays| rays.kind == kind).map(|rays| rays.ms).sum()
+    }
+}
+
 /// The figures of one kind of rays.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RayReport {
-    /// `camera`, `diffuse` or `any`.
+    /// `camera`, `shadow`, `reflection`, `diffuse`, `any` or `object`.
     pub kind: String,
     /// How many.
     pub rays: u64,
@@ -111,18 +207,22 @@ pub struct RayReport {
     pub unfinished: u64,
     /// Our median in millions of rays a second.
     pub mrays: f64,
-    /// The rival's.
-    pub embree_mrays: Option<f64>,
     /// Times.
     pub time: Comparison,
-    /// How the hits differ from the rival's.
-    pub difference: Option<Difference>,
+    /// How the hits differ from those of each rival.
+    pub differences: Vec<Difference>,
+    /// Of `object`: the same rays, while the object is all that there is.
+    pub alone: Option<Against>,
 }
 
 /// How two rounds of hits differ. The same triangle is the same hit, since a grazing ray's distance is mostly rounding; of different
 /// triangles, distances are the same if they differ by at most 1e-4 of the greater. A miss is infinitely far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
+    /// From whose.
+    pub rival: String,
+    /// Rays that were compared: fewer than all where the rival is far too slow for them.
+    pub rays: u64,
     /// Another triangle at the same distance: neighbours share edges.
     pub triangle: u64,
     /// We hit something nearer than the rival.
@@ -147,21 +247,31 @@ pub struct Example {
     /// Our distance and triangle; none for a miss.
     pub ours: Option<(f32, u32)>,
     /// The rival's.
-    pub embree: Option<(f32, u32)>,
+    pub theirs: Option<(f32, u32)>,
 }
 
-/// Times of both. Medians, unless a name says otherwise.
+/// Our times beside those of each rival.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Comparison {
     /// Ours, on the device.
     pub ours: Times,
-    /// The rival's, on the wall.
-    pub embree: Option<Times>,
-    /// How often faster than the rival we are, by medians.
+    /// The rivals'.
+    pub rivals: Vec<Against>,
+}
+
+/// Someone's times, and how often faster we are. Medians, unless a name says otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Against {
+    /// Who.
+    pub rival: String,
+    /// On the device for who runs there, else on the wall.
+    pub times: Times,
+    /// How often faster we are, by medians; none where we took no time at all.
     pub ratio: Option<f64>,
     /// Likewise by the best runs.
     pub best_ratio: Option<f64>,
-    /// Likewise by processor time, where the device is a CPU: what a busy machine disturbs least.
+    /// Likewise by processor time, where the device is a CPU: what a busy machine disturbs least. None for a rival that has traced a part of
+    /// the rays.
     pub processor_ratio: Option<f64>,
 }
 
@@ -187,6 +297,16 @@ pub struct Run {
     pub processor_ms: f64,
 }
 
+/// The runs of a rival.
+pub struct RivalRuns<'a> {
+    /// Who.
+    pub name: &'a str,
+    /// In order.
+    pub runs: &'a [Run],
+    /// Whether it has traced a part of the rays, so that its processor time is that of the part.
+    pub is_sampled: bool,
+}
+
 impl Times {
     /// Sums up runs; zeros where there is none.
     pub fn of(runs: &[Run]) -> Times {
@@ -197,6 +317,11 @@ impl Times {
             worst_ms: ms().reduce(f64::max).unwrap_or(0.0),
             processor_ms: median(runs.iter().map(|run| run.processor_ms)),
         }
+    }
+
+    /// Millions of rays a second, of so many rays.
+    pub fn mrays(&self, rays: u64) -> f64 {
+        if self.median_ms > 0.0 { rays as f64 / self.median_ms * 1e-3 } else { 0.0 }
     }
 }
 
@@ -212,166 +337,96 @@ pub fn median(numbers: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
+impl Against {
+    /// Compares our times to a rival's.
+    pub fn of(ours: &Times, rival: &RivalRuns<'_>, device_is_cpu: bool) -> Against {
+        let times = Times::of(rival.runs);
+        let ratio = |ours: f64, theirs: f64| (ours > 0.0).then_some(theirs / ours);
+        Against {
+            rival: rival.name.to_owned(),
+            times,
+            ratio: ratio(ours.median_ms, times.median_ms),
+            best_ratio: ratio(ours.best_ms, times.best_ms),
+            processor_ratio: ratio(ours.processor_ms, times.processor_ms).filter(|_| device_is_cpu && !rival.is_sampled),
+        }
+    }
+}
+
 impl Comparison {
-    /// Compares runs; the rival's may be missing.
-    pub fn of(ours: &[Run], embree: &[Run], device_is_cpu: bool) -> Comparison {
+    /// Compares our runs to those of each rival.
+    pub fn of(ours: &[Run], rivals: &[RivalRuns<'_>], device_is_cpu: bool) -> Comparison {
         let ours = Times::of(ours);
-        let embree = (!embree.is_empty()).then(|| Times::of(embree));
-        let ratio = |ours: f64, embree: f64| (ours > 0.0).then_some(embree / ours);
-        Comparison {
-            ratio: embree.and_then(|embree| ratio(ours.median_ms, embree.median_ms)),
-            best_ratio: embree.and_then(|embree| ratio(ours.best_ms, embree.best_ms)),
-            processor_ratio: embree.filter(|_| device_is_cpu).and_then(|embree| ratio(ours.processor_ms, embree.processor_ms)),
-            ours,
-            embree,
-        }
+        Comparison { ours, rivals: rivals.iter().map(|rival| Against::of(&ours, rival, device_is_cpu)).collect() }
+    }
+
+    /// A rival by its name.
+    pub fn against(&self, rival: &str) -> Option<&Against> {
+        self.rivals.iter().find(|against| against.rival == rival)
+    }
+
+    /// By whom a change is measured: the first rival that both have.
+    pub fn common<'a>(&'a self, other: &'a Comparison) -> Option<(&'a Against, &'a Against)> {
+        self.rivals.iter().find_map(|ours| Some((ours, other.against(&ours.rival)?)))
     }
 }
 
-/// Rows of cells as text, with columns as wide as they need be; the first column to the left, the others to the right.
-pub fn columns(rows: &[Vec<String>]) -> String {
-    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..count)
-        .map(|column| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0))
-        .collect();
-    let mut text = String::new();
-    for row in rows {
-        let mut line = String::new();
-        for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
-            // Writing to a string cannot fail.
-            let _ = if column == 0 { write!(line, "{cell:<width$}") } else { write!(line, "  {cell:>width$}") };
-        }
-        text.push_str(line.trim_end());
-        text.push('\n');
-    }
-    text
-}
-
-fn bytes_each(bytes: u64, triangles: u32) -> String {
-    format!("{:.0}", bytes as f64 / f64::from(triangles.max(1)))
-}
-
-/// Three decimals below 1, so that no ratio loses its second digit.
-pub fn number(value: Option<f64>) -> String {
-    match value {
-        None => "-".to_owned(),
-        Some(value) if value < 1.0 => format!("{value:.3}"),
-        Some(value) if value < 10.0 => format!("{value:.2}"),
-        Some(value) => format!("{value:.1}"),
+impl SceneReport {
+    /// Every comparison by its name.
+    pub fn figures(&self) -> impl Iterator<Item = (&str, &Comparison)> {
+        let rebuild = self.rebuild.iter().map(|rebuild| ("rebuild", rebuild));
+        let frame = self.frame.iter().map(|frame| ("frame", &frame.time));
+        rebuild.chain(frame).chain(self.rays.iter().map(|rays| (rays.kind.as_str(), &rays.time)))
     }
 }
 
-impl Report {
-    /// The table; of the steps only those whose name holds `filter`.
-    pub fn table(&self, filter: Option<&str>) -> String {
-        let mut text = format!("{} ({})\n", self.device, self.driver);
-        match &self.embree {
-            Some(rival) => {
-                let Rival { version, threads, trace_quality, .. } = rival;
-                text += &format!("against Embree {version}, {threads} threads, Morton rebuild, rays through its {trace_quality} tree; ");
-            }
-            None => text += "Embree is not there: its columns are empty; ",
-        }
-        text += &format!(
-            "medians of {} runs; ratio above 1: faster than Embree, by medians, by the best runs, and by processor time\n",
-            self.runs
-        );
-        text += &format!(
-            "pipelines made in {:.0} ms; recorded in {:.1} us a build, {:.1} us a trace\n\n",
-            self.pipelines_ms, self.record_build_us, self.record_trace_us
-        );
-
-        let mut rows = vec![head(&["scene", "triangles", "k", "overlap", "resolution", "cells", "in use", "pairs", "of", "longest"])];
-        rows.extend(self.scenes.iter().map(|scene| {
-            vec![
-                scene.scene.clone(),
-                scene.triangles.to_string(),
-                format!("{:.1}", scene.density),
-                scene.overlap.clone(),
-                scene.resolution.map(|cells| cells.to_string()).join("x"),
-                scene.cells.to_string(),
-                scene.cells_in_use.to_string(),
-                scene.pairs.to_string(),
-                scene.pair_total.to_string(),
-                scene.longest_list.to_string(),
-            ]
-        }));
-        text += &columns(&rows);
-
-        let mut rows = vec![head(&["scene", "bytes a triangle:", "grid", "scratch", "sum", "sum if fitted"])];
-        rows.extend(self.scenes.iter().map(|scene| {
-            let each = |bytes| bytes_each(bytes, scene.triangles);
-            let (grid, scratch) = (scene.grid_bytes, scene.scratch_bytes);
-            vec![scene.scene.clone(), String::new(), each(grid), each(scratch), each(grid + scratch), each(scene.fitted_bytes)]
-        }));
-        text += &format!("\n{}", columns(&rows));
-
-        let mut rows = vec![head(&[
-            "scene",
-            "",
-            "ms",
-            "Embree",
-            "Mrays/s",
-            "Embree",
-            "ratio",
-            "best",
-            "processor",
-            "hits",
-            "other triangle",
-            "nearer",
-            "farther",
-        ])];
-        for scene in &self.scenes {
-            let times = |comparison: &Comparison| [number(Some(comparison.ours.median_ms)), number(comparison.embree.map(|t| t.median_ms))];
-            if let Some(rebuild) = &scene.rebuild {
-                let mut row = vec![scene.scene.clone(), "rebuild".to_owned()];
-                row.extend(times(rebuild));
-                row.extend([String::new(), String::new(), number(rebuild.ratio), number(rebuild.best_ratio)]);
-                row.extend([number(rebuild.processor_ratio)]);
-                rows.push(row);
-            }
-            for rays in &scene.rays {
-                let mut row = vec![scene.scene.clone(), rays.kind.clone()];
-                row.extend(times(&rays.time));
-                row.extend([number(Some(rays.mrays)), number(rays.embree_mrays), number(rays.time.ratio)]);
-                row.extend([number(rays.time.best_ratio), number(rays.time.processor_ratio)]);
-                row.push(format!("{:.1} %", rays.hits as f64 / rays.rays.max(1) as f64 * 100.0));
-                let difference = |part: fn(&Difference) -> u64| rays.difference.as_ref().map_or("-".to_owned(), |d| part(d).to_string());
-                row.extend([difference(|d| d.triangle), difference(|d| d.nearer), difference(|d| d.farther)]);
-                if rays.unfinished > 0 {
-                    row.push(format!("{} unfinished", rays.unfinished));
-                }
-                rows.push(row);
-            }
-        }
-        text += &format!("\n{}", columns(&rows));
-
-        for scene in &self.scenes {
-            let sum: f64 = scene.steps.iter().map(|step| step.ms).sum();
-            let mut rows = vec![head(&[&scene.scene, "kind", "launches", "ms", "share"])];
-            let shown = scene.steps.iter().filter(|step| filter.is_none_or(|filter| step.name.contains(filter)));
-            rows.extend(shown.map(|step| {
-                let share = format!("{:.1} %", step.ms / sum.max(f64::MIN_POSITIVE) * 100.0);
-                vec![step.name.clone(), step.kind.clone(), step.count.to_string(), format!("{:.3}", step.ms), share]
-            }));
-            if rows.len() > 1 {
-                text += &format!("\n{}", columns(&rows));
-            }
-        }
-        text
-    }
+/// The geometric mean of the ratios of one figure to one rival.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mean {
+    /// `rebuild`, `frame` or a kind of rays.
+    pub figure: String,
+    /// Against whom.
+    pub rival: String,
+    /// Over which scenes.
+    pub scenes: Vec<String>,
+    /// How often faster we are.
+    pub ratio: f64,
 }
 
-pub fn head(names: &[&str]) -> Vec<String> {
-    names.iter().map(|&name| name.to_owned()).collect()
+/// The means over those of the `wanted` scenes that were measured, or over all scenes where none of them was.
+pub fn means(setup: &Setup, scenes: &[SceneReport], wanted: &[&str]) -> Vec<Mean> {
+    let is_wanted = |scene: &&SceneReport| wanted.contains(&scene.scene.as_str());
+    let any_wanted = scenes.iter().any(|scene| is_wanted(&scene));
+    let chosen: Vec<&SceneReport> = scenes.iter().filter(|scene| !any_wanted || is_wanted(scene)).collect();
+    let mut figures: Vec<&str> = Vec::new();
+    for (figure, _) in chosen.iter().flat_map(|scene| scene.figures()) {
+        if !figures.contains(&figure) {
+            figures.push(figure);
+        }
+    }
+    let mean = |figure: &str, rival: &Rival| {
+        let ratios = chosen.iter().filter_map(|scene| {
+            let (_, comparison) = scene.figures().find(|(name, _)| *name == figure)?;
+            let ratio = comparison.against(&rival.name)?.ratio.filter(|ratio| *ratio > 0.0)?;
+            Some((scene.scene.clone(), ratio.ln()))
+        });
+        let (scenes, logarithms): (Vec<String>, Vec<f64>) = ratios.unzip();
+        let ratio = (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
+        (!scenes.is_empty()).then(|| Mean { figure: figure.to_owned(), rival: rival.name.clone(), scenes, ratio })
+    };
+    figures.iter().flat_map(|figure| setup.rivals.iter().filter_map(|rival| mean(figure, rival))).collect()
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
 
     fn runs(ms: &[f64]) -> Vec<Run> {
         ms.iter().map(|&ms| Run { ms, processor_ms: 2.0 * ms }).collect()
+    }
+
+    /// A comparison of times to those of a rival of the name.
+    pub fn comparison(ours: &[f64], rival: &str, theirs: &[f64]) -> Comparison {
+        Comparison::of(&runs(ours), &[RivalRuns { name: rival, runs: &runs(theirs), is_sampled: false }], true)
     }
 
     #[test]
@@ -383,14 +438,75 @@ mod tests {
 
     #[test]
     fn above_one_is_faster() {
-        let comparison = Comparison::of(&runs(&[10.0, 20.0, 12.0]), &runs(&[24.0, 5.0, 30.0]), true);
-        assert_eq!((comparison.ratio, comparison.best_ratio, comparison.processor_ratio), (Some(2.0), Some(0.5), Some(2.0)));
-        assert_eq!(Comparison::of(&runs(&[1.0]), &runs(&[1.0]), false).processor_ratio, None);
-        assert_eq!(Comparison::of(&runs(&[1.0]), &[], true).ratio, None);
+        let against = comparison(&[10.0, 20.0, 12.0], "Embree", &[24.0, 5.0, 30.0]).rivals.remove(0);
+        assert_eq!((against.ratio, against.best_ratio, against.processor_ratio), (Some(2.0), Some(0.5), Some(2.0)));
+        let of = |device_is_cpu, is_sampled| {
+            let rival = RivalRuns { name: "slow", runs: &runs(&[1.0]), is_sampled };
+            Against::of(&Times::of(&runs(&[1.0])), &rival, device_is_cpu).processor_ratio
+        };
+        assert_eq!((of(true, false), of(false, false), of(true, true)), (Some(1.0), None, None));
+        assert!(Comparison::of(&runs(&[1.0]), &[], true).rivals.is_empty());
+    }
+
+    fn setup() -> Setup {
+        let rival = |name: &str| Rival {
+            name: name.to_owned(),
+            version: String::new(),
+            threads: None,
+            rebuild: String::new(),
+            tree: String::new(),
+        };
+        Setup {
+            schema: SCHEMA,
+            version: String::new(),
+            device: String::new(),
+            driver: String::new(),
+            device_is_cpu: true,
+            rivals: vec![rival("Embree"), rival("driver")],
+            size: 8,
+            runs: 1,
+        }
+    }
+
+    fn scene(name: &str, rebuild: Comparison) -> SceneReport {
+        SceneReport {
+            scene: name.to_owned(),
+            view: View { eye: [0.0; 3], target: [1.0; 3], fov_degrees: 45.0 },
+            triangles: 1,
+            dropped: 0,
+            density: 8.0,
+            overlap: "exact".to_owned(),
+            resolution: [1; 3],
+            cells: 1,
+            cells_in_use: 1,
+            pairs: 1,
+            pair_total: 1,
+            longest_list: 1,
+            grid_bytes: 1,
+            scratch_bytes: 1,
+            fitted_bytes: 1,
+            rebuilt_bytes: Vec::new(),
+            traced_bytes: Vec::new(),
+            rebuild: Some(rebuild),
+            steps: Vec::new(),
+            frame: None,
+            rays: Vec::new(),
+        }
     }
 
     #[test]
-    fn numbers_keep_two_digits() {
-        assert_eq!([None, Some(0.1234), Some(2.345), Some(123.45)].map(number), ["-", "0.123", "2.35", "123.5"]);
+    fn means_are_geometric_and_over_what_was_wanted() {
+        let scenes = [
+            scene("bunny", comparison(&[1.0], "Embree", &[0.5])),
+            scene("dragon", comparison(&[1.0], "Embree", &[8.0])),
+            scene("other", comparison(&[1.0], "Embree", &[1000.0])),
+        ];
+        let found = means(&setup(), &scenes, &["bunny", "dragon", "sponza"]);
+        assert_eq!(found.len(), 1, "nothing is known of the driver");
+        assert_eq!((found[0].figure.as_str(), found[0].rival.as_str()), ("rebuild", "Embree"));
+        assert_eq!(found[0].scenes, ["bunny", "dragon"]);
+        assert!((found[0].ratio - 2.0).abs() < 1e-12);
+        let all = means(&setup(), &scenes, &["sponza"]);
+        assert_eq!(all[0].scenes.len(), 3);
     }
 }

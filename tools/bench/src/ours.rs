@@ -1,0 +1,103 @@
+//! gridwalk as one of the contenders.
+
+use std::sync::Arc;
+
+use anyhow::Result;
+use gridwalk_render::{GpuScene, Grid, Player, RayBatch, StepTime};
+
+use crate::contender::{Answers, Contender, Query, Set, Tree, occluded};
+
+/// What is rebuilt and traced.
+enum Source<'a> {
+    Still(Box<Grid>, &'a GpuScene),
+    Moving(&'a mut Player),
+}
+
+/// A grid and the rays that are traced through it.
+pub struct Ours<'a> {
+    source: Source<'a>,
+    batches: Vec<(Query, RayBatch)>,
+    /// Steps of each rebuild.
+    steps: Vec<Vec<StepTime>>,
+}
+
+impl<'a> Ours<'a> {
+    /// A grid over a scene.
+    pub fn still(grid: Grid, scene: &'a GpuScene) -> Ours<'a> {
+        Ours { source: Source::Still(Box::new(grid), scene), batches: Vec::new(), steps: Vec::new() }
+    }
+
+    /// A player's grid, over what it shows now.
+    pub fn moving(player: &'a mut Player) -> Ours<'a> {
+        Ours { source: Source::Moving(player), batches: Vec::new(), steps: Vec::new() }
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        match &self.source {
+            Source::Still(grid, _) => grid,
+            Source::Moving(player) => player.grid(),
+        }
+    }
+
+    /// The steps of all rebuilds since the last call but the first, which is no turn that counts.
+    pub fn take_steps(&mut self) -> Vec<Vec<StepTime>> {
+        std::mem::take(&mut self.steps).into_iter().skip(1).collect()
+    }
+}
+
+impl Contender for Ours<'_> {
+    fn name(&self) -> &'static str {
+        "gridwalk"
+    }
+
+    fn prepare(&mut self, _: Tree) -> Result<()> {
+        Ok(())
+    }
+
+    fn rebuild(&mut self) -> Result<f64> {
+        match &mut self.source {
+            Source::Still(grid, scene) => grid.rebuild(scene)?,
+            Source::Moving(player) => player.rebuild()?,
+        }
+        let stats = self.grid().stats();
+        let (ms, steps) = (stats.ms, stats.steps.clone());
+        self.steps.push(steps);
+        Ok(ms)
+    }
+
+    fn load(&mut self, sets: &[Arc<Set>]) -> Result<()> {
+        self.batches.clear();
+        let context = self.grid().context().clone();
+        for set in sets {
+            self.batches.push((set.query, RayBatch::new(&context, &set.rays)?));
+        }
+        Ok(())
+    }
+
+    fn trace(&mut self, set: usize) -> Result<f64> {
+        let grid = match &self.source {
+            Source::Still(grid, _) => grid,
+            Source::Moving(player) => player.grid(),
+        };
+        Ok(match self.batches.get_mut(set) {
+            Some((Query::Closest, batch)) => batch.closest_hit(grid)?,
+            Some((Query::Any, batch)) => batch.any_hit(grid)?,
+            None => 0.0,
+        })
+    }
+
+    fn answers(&mut self, set: usize) -> Result<Answers> {
+        let hits = match self.batches.get(set) {
+            Some((Query::Closest, batch)) => batch.read_hits()?,
+            Some((Query::Any, batch)) => occluded(&batch.read_occluded()?),
+            None => Vec::new(),
+        };
+        Ok(Answers { hits, step: 1 })
+    }
+
+    fn bytes(&self) -> Option<u64> {
+        let stats = self.grid().stats();
+        Some(stats.grid_bytes + stats.scratch_bytes)
+    }
+}
