@@ -138,7 +138,7 @@ pub static LIGHT_ADD: Kernel = Kernel {
         ("film", Access::ReadWrite),
         ("unfinished", Access::ReadWrite),
     ],
-    spec_constants: &[],
+    spec_constants: &[(1, "BLEND", 0)],
 };
 
 /// Kernel `light_count`, from `glsl/render/map/light_count.comp`.
@@ -179,6 +179,25 @@ pub static LIGHT_EMIT: Kernel = Kernel {
         ("shadow_paths", Access::Write),
     ],
     spec_constants: &[],
+};
+
+/// Kernel `light_pass`, from `glsl/render/map/light_pass.comp`.
+pub static LIGHT_PASS: Kernel = Kernel {
+    name: "light_pass",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/light_pass.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[
+        ("grid", Access::Read),
+        ("scene", Access::Read),
+        ("queue", Access::Read),
+        ("rays", Access::Read),
+        ("passed", Access::Write),
+        ("walks", Access::ReadWrite),
+    ],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
 
 /// Kernel `masked_any_hit`, from `glsl/render/map/masked_any_hit.comp`.
@@ -278,7 +297,7 @@ pub static SHADE: Kernel = Kernel {
     spirv: spirv!("../spirv/shade.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 80,
+    push_constant_size: 104,
     accesses: &[
         ("scene", Access::Read),
         ("queue", Access::Read),
@@ -289,8 +308,10 @@ pub static SHADE: Kernel = Kernel {
         ("surfaces", Access::Write),
         ("reflects", Access::Write),
         ("unfinished", Access::ReadWrite),
+        ("ways", Access::ReadWrite),
+        ("waiting", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(1, "BLEND", 0)],
 };
 
 /// Kernel `skin`, from `glsl/render/map/skin.comp`.
@@ -312,6 +333,29 @@ pub static SKIN: Kernel = Kernel {
     spec_constants: &[],
 };
 
+/// Kernel `ways_emit`, from `glsl/render/map/ways_emit.comp`.
+pub static WAYS_EMIT: Kernel = Kernel {
+    name: "ways_emit",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/ways_emit.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 88,
+    accesses: &[
+        ("queue", Access::Read),
+        ("rays", Access::Read),
+        ("surfaces", Access::Read),
+        ("paths", Access::Read),
+        ("flags", Access::Read),
+        ("offsets", Access::Read),
+        ("ways", Access::ReadWrite),
+        ("waiting", Access::Read),
+        ("next_rays", Access::Write),
+        ("next_paths", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
 /// Every kernel of this crate, in order of name.
 pub static ALL: &[&Kernel] = &[
     &CAMERA_RAYS,
@@ -324,6 +368,7 @@ pub static ALL: &[&Kernel] = &[
     &LIGHT_ADD,
     &LIGHT_COUNT,
     &LIGHT_EMIT,
+    &LIGHT_PASS,
     &MASKED_ANY_HIT,
     &MASKED_CLOSEST_HIT,
     &MORPH,
@@ -331,6 +376,7 @@ pub static ALL: &[&Kernel] = &[
     &REFLECT_EMIT,
     &SHADE,
     &SKIN,
+    &WAYS_EMIT,
 ];
 
 /// Bytes of a field, found by a function that takes it.
@@ -630,6 +676,22 @@ const _: () = {
     assert!(size_of::<Host>() == 80);
 };
 const _: () = {
+    use crate::push::LightPass as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, scene) == 8);
+    assert!(size(|host: &Host| &host.scene) == 8);
+    assert!(core::mem::offset_of!(Host, queue) == 16);
+    assert!(size(|host: &Host| &host.queue) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 24);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, passed) == 32);
+    assert!(size(|host: &Host| &host.passed) == 8);
+    assert!(core::mem::offset_of!(Host, walks) == 40);
+    assert!(size(|host: &Host| &host.walks) == 8);
+    assert!(size_of::<Host>() == 48);
+};
+const _: () = {
     use crate::push::MaskedAnyHit as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);
@@ -812,8 +874,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.lights) == 8);
     assert!(core::mem::offset_of!(Host, panorama) == 96);
     assert!(size(|host: &Host| &host.panorama) == 8);
-    assert!(core::mem::offset_of!(Host, reserved) == 104);
-    assert!(size(|host: &Host| &host.reserved) == 8);
+    assert!(core::mem::offset_of!(Host, opacities) == 104);
+    assert!(size(|host: &Host| &host.opacities) == 8);
     assert!(core::mem::offset_of!(Host, ambient) == 112);
     assert!(size(|host: &Host| &host.ambient) == 12);
     assert!(core::mem::offset_of!(Host, triangle_count) == 124);
@@ -841,9 +903,17 @@ const _: () = {
     assert!(size(|host: &Host| &host.reflects) == 8);
     assert!(core::mem::offset_of!(Host, unfinished) == 64);
     assert!(size(|host: &Host| &host.unfinished) == 8);
-    assert!(core::mem::offset_of!(Host, flags) == 72);
+    assert!(core::mem::offset_of!(Host, ways) == 72);
+    assert!(size(|host: &Host| &host.ways) == 8);
+    assert!(core::mem::offset_of!(Host, waiting) == 80);
+    assert!(size(|host: &Host| &host.waiting) == 8);
+    assert!(core::mem::offset_of!(Host, flags) == 88);
     assert!(size(|host: &Host| &host.flags) == 4);
-    assert!(size_of::<Host>() == 80);
+    assert!(core::mem::offset_of!(Host, depth) == 92);
+    assert!(size(|host: &Host| &host.depth) == 4);
+    assert!(core::mem::offset_of!(Host, capacity) == 96);
+    assert!(size(|host: &Host| &host.capacity) == 4);
+    assert!(size_of::<Host>() == 104);
 };
 const _: () = {
     use crate::push::Skin as Host;
@@ -908,4 +978,30 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, srgb) == 12);
     assert!(size(|host: &Host| &host.srgb) == 4);
     assert!(size_of::<Host>() == 16);
+};
+const _: () = {
+    use crate::push::WaysEmit as Host;
+    assert!(core::mem::offset_of!(Host, queue) == 0);
+    assert!(size(|host: &Host| &host.queue) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, surfaces) == 16);
+    assert!(size(|host: &Host| &host.surfaces) == 8);
+    assert!(core::mem::offset_of!(Host, paths) == 24);
+    assert!(size(|host: &Host| &host.paths) == 8);
+    assert!(core::mem::offset_of!(Host, flags) == 32);
+    assert!(size(|host: &Host| &host.flags) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 40);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, ways) == 48);
+    assert!(size(|host: &Host| &host.ways) == 8);
+    assert!(core::mem::offset_of!(Host, waiting) == 56);
+    assert!(size(|host: &Host| &host.waiting) == 8);
+    assert!(core::mem::offset_of!(Host, next_rays) == 64);
+    assert!(size(|host: &Host| &host.next_rays) == 8);
+    assert!(core::mem::offset_of!(Host, next_paths) == 72);
+    assert!(size(|host: &Host| &host.next_paths) == 8);
+    assert!(core::mem::offset_of!(Host, capacity) == 80);
+    assert!(size(|host: &Host| &host.capacity) == 4);
+    assert!(size_of::<Host>() == 88);
 };

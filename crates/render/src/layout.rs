@@ -8,6 +8,8 @@ pub(crate) const NO_MAP: u32 = u32::MAX;
 pub(crate) const MATERIAL_MIRROR: u32 = 1;
 /// [`Material::flags`]: `normal_map` holds heights.
 pub(crate) const MATERIAL_HEIGHT_MAP: u32 = 2;
+/// [`Material::flags`]: the opacity is a share, not a mask.
+pub(crate) const MATERIAL_BLEND: u32 = 4;
 
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -94,7 +96,7 @@ pub(crate) struct SceneTable {
     pub(crate) srgb: u64,
     pub(crate) lights: u64,
     pub(crate) panorama: u64,
-    pub(crate) reserved: u64,
+    pub(crate) opacities: u64,
     pub(crate) ambient: [f32; 3],
     pub(crate) triangle_count: u32,
     pub(crate) background: Background,
@@ -114,6 +116,27 @@ pub(crate) struct QueueHeader {
 pub(crate) struct Path {
     pub(crate) weight: [f32; 3],
     pub(crate) slot: u32,
+}
+
+/// What a pixel has still to follow, where surfaces are seen through.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Ways {
+    pub(crate) level: u32,
+    pub(crate) waiting: u32,
+    pub(crate) passed: u32,
+    pub(crate) reflects: u32,
+}
+
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct WaitingRay {
+    pub(crate) origin: [f32; 3],
+    pub(crate) level: u32,
+    pub(crate) direction: [f32; 3],
+    pub(crate) reserved0: u32,
+    pub(crate) weight: [f32; 3],
+    pub(crate) reserved1: u32,
 }
 
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]

@@ -94,6 +94,18 @@ pub(crate) struct LightEmit {
     pub(crate) padding: u32,
 }
 
+/// Of kernel `light_pass`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LightPass {
+    pub(crate) grid: u64,
+    pub(crate) scene: u64,
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) passed: u64,
+    pub(crate) walks: u64,
+}
+
 /// Of kernel `masked_any_hit`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -145,7 +157,29 @@ pub(crate) struct Shade {
     pub(crate) surfaces: u64,
     pub(crate) reflects: u64,
     pub(crate) unfinished: u64,
+    pub(crate) ways: u64,
+    pub(crate) waiting: u64,
     pub(crate) flags: u32,
+    pub(crate) depth: u32,
+    pub(crate) capacity: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `ways_emit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct WaysEmit {
+    pub(crate) queue: u64,
+    pub(crate) rays: u64,
+    pub(crate) surfaces: u64,
+    pub(crate) paths: u64,
+    pub(crate) flags: u64,
+    pub(crate) offsets: u64,
+    pub(crate) ways: u64,
+    pub(crate) waiting: u64,
+    pub(crate) next_rays: u64,
+    pub(crate) next_paths: u64,
+    pub(crate) capacity: u32,
     pub(crate) padding: u32,
 }
 

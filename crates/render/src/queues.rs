@@ -3,7 +3,7 @@
 use crate::{
     Buffer, BufferDesc, BufferKind, Context, Error, Result,
     compact::sum_count,
-    layout::{CameraFrame, Film, FirstHitRecord, Path, QueueHeader, Surface},
+    layout::{CameraFrame, Film, FirstHitRecord, Path, QueueHeader, Surface, WaitingRay, Ways},
 };
 use bytemuck::{AnyBitPattern, NoUninit};
 use gridwalk::{Hit, Ray};
@@ -19,6 +19,14 @@ pub(crate) struct QueueShape {
     pub(crate) has_counts: bool,
     /// Bytes of the trace's scratch.
     pub(crate) scratch: u64,
+    /// Rays of a pixel that may have to wait; 0 where no surface is seen through.
+    pub(crate) waiting: u32,
+}
+
+/// What a pixel has still to follow, where surfaces are seen through.
+pub(crate) struct WaySet {
+    pub(crate) ways: Buffer,
+    pub(crate) waiting: Buffer,
 }
 
 /// Everything that one batch of pixels needs.
@@ -40,6 +48,7 @@ pub(crate) struct Queues {
     pub(crate) film: Buffer,
     pub(crate) unfinished: Buffer,
     pub(crate) scratch: Buffer,
+    pub(crate) ways: Option<WaySet>,
     pub(crate) records: Option<Buffer>,
     pub(crate) counters: Option<Buffer>,
     /// The way back to the host, where it does not see the device's memory.
@@ -57,7 +66,7 @@ impl Queues {
             Ok::<_, Error>(buffer)
         };
         let mut buffer = |name, count: u32, size: usize| sized(name, u64::from(count) * size as u64, BufferKind::Device);
-        let QueueShape { capacity, headers, has_layers, has_counts, scratch } = shape;
+        let QueueShape { capacity, headers, has_layers, has_counts, scratch, waiting } = shape;
         let mut queues = Queues {
             shape,
             camera: buffer("camera", 1, size_of::<CameraFrame>())?,
@@ -75,6 +84,15 @@ impl Queues {
             occluded: buffer("occluded", capacity, 4)?,
             film: buffer("film", capacity, size_of::<Film>())?,
             unfinished: buffer("unfinished", capacity, 4)?,
+            ways: if waiting > 0 {
+                let waiting_bytes = waiting as usize * size_of::<WaitingRay>();
+                Some(WaySet {
+                    ways: buffer("ways", capacity, size_of::<Ways>())?,
+                    waiting: buffer("waiting rays", capacity, waiting_bytes)?,
+                })
+            } else {
+                None
+            },
             records: if has_layers { Some(buffer("first hits", capacity, size_of::<FirstHitRecord>())?) } else { None },
             counters: if has_counts { Some(buffer("walk counters", capacity, 16)?) } else { None },
             scratch: sized("trace scratch", scratch, BufferKind::Device)?,

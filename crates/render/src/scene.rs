@@ -52,16 +52,22 @@ pub(crate) struct Arrays {
     pub(crate) surrounds: Buffer,
     /// None where no mesh has any.
     pub(crate) colours: Option<Buffer>,
+    /// None where no mesh has any. Meshes of key-frames never have: theirs are one.
+    opacities: Option<Buffer>,
     vertices: u32,
     triangles: u32,
 }
 
 impl Arrays {
-    /// Room for so many vertices and triangles, with colours of vertices or without.
-    pub(crate) fn new(context: &Context, vertices: u32, triangles: u32, has_colours: bool) -> Result<Arrays> {
+    /// Room for so many vertices and triangles, with colours and opacities of vertices or without.
+    pub(crate) fn new(context: &Context, vertices: u32, triangles: u32, has_colours: bool, has_opacities: bool) -> Result<Arrays> {
         let buffer = |name, count: u32, size: u64| {
             context.buffer(&BufferDesc { name, size: u64::from(count) * size, kind: BufferKind::Device, dedicated: false })
         };
+        let opacities = if has_opacities { Some(buffer("scene opacities", vertices, 4)?) } else { None };
+        if let Some(opacities) = &opacities {
+            opacities.write(0, &vec![1.0_f32; vertices as usize])?;
+        }
         Ok(Arrays {
             positions: buffer("scene positions", vertices, 12)?,
             normals: buffer("scene normals", vertices, 12)?,
@@ -69,6 +75,7 @@ impl Arrays {
             indices: buffer("scene indices", triangles, 12)?,
             surrounds: buffer("scene triangle materials", triangles, 8)?,
             colours: if has_colours { Some(buffer("scene colours", vertices, 12)?) } else { None },
+            opacities,
             vertices,
             triangles,
         })
@@ -76,7 +83,11 @@ impl Arrays {
 
     /// Number of buffers.
     pub(crate) fn count(&self) -> u32 {
-        5 + u32::from(self.colours.is_some())
+        5 + u32::from(self.colours.is_some()) + u32::from(self.opacities.is_some())
+    }
+
+    pub(crate) fn has_opacities(&self) -> bool {
+        self.opacities.is_some()
     }
 
     pub(crate) fn write_vertices(&self, mesh: &Mesh, first_vertex: u32) -> Result<()> {
@@ -84,6 +95,10 @@ impl Arrays {
         self.positions.write(first * 12, &mesh.positions)?;
         self.normals.write(first * 12, &mesh.normals)?;
         self.uvs.write(first * 8, &mesh.uvs)?;
+        if let Some(opacities) = &self.opacities {
+            // Empty ones are one already.
+            opacities.write(first * 4, &mesh.opacities)?;
+        }
         match &self.colours {
             Some(colours) if mesh.colours.is_empty() => colours.write(first * 12, &vec![[1.0_f32; 3]; mesh.positions.len()]),
             Some(colours) => colours.write(first * 12, &mesh.colours),
@@ -107,7 +122,7 @@ impl Arrays {
 
     fn bytes(&self) -> u64 {
         let always = [&self.positions, &self.normals, &self.uvs, &self.indices, &self.surrounds];
-        always.into_iter().chain(&self.colours).map(Buffer::size).sum()
+        always.into_iter().chain(&self.colours).chain(&self.opacities).map(Buffer::size).sum()
     }
 }
 
@@ -122,6 +137,9 @@ struct Surfaces {
     texel_count: u64,
     has_masks: bool,
     has_mirrors: bool,
+    has_blends: bool,
+    /// Of vertices, whatever the material.
+    has_opacities: bool,
 }
 
 impl Surfaces {
@@ -136,6 +154,8 @@ impl Surfaces {
             texel_count: 0,
             has_masks: false,
             has_mirrors: false,
+            has_blends: false,
+            has_opacities: has_opacities(scene),
         };
         surfaces.append(context, scene, false)?;
         Ok(surfaces)
@@ -145,7 +165,8 @@ impl Surfaces {
     /// by a quarter at least. Returns the number of buffers that were made anew.
     fn append(&mut self, context: &Context, scene: &Scene, slack: bool) -> Result<u32> {
         let added = scene.materials.get(self.material_count..).unwrap_or_default();
-        let materials: Vec<layout::Material> = added.iter().map(|material| device_material(material, &scene.textures)).collect();
+        let materials: Vec<layout::Material> =
+            added.iter().map(|material| device_material(material, &scene.textures, self.has_opacities)).collect();
         let mut first_texel = self.texel_count;
         let mut textures = Vec::new();
         let new_textures = scene.textures.get(self.texture_count..).unwrap_or_default();
@@ -183,8 +204,10 @@ impl Surfaces {
         for (texture, placed) in new_textures.iter().zip(&textures) {
             self.texels.write(u64::from(placed.first_texel) * 4, &texture.pixels)?;
         }
-        self.has_masks |= materials.iter().any(|material| material.opacity_map != layout::NO_MAP);
+        let is_blended = |material: &layout::Material| material.flags & layout::MATERIAL_BLEND != 0;
+        self.has_masks |= materials.iter().any(|material| !is_blended(material) && material.opacity_map != layout::NO_MAP);
         self.has_mirrors |= materials.iter().any(|material| material.flags & layout::MATERIAL_MIRROR != 0);
+        self.has_blends |= materials.iter().any(is_blended);
         self.material_count = scene.materials.len();
         self.texture_count = scene.textures.len();
         self.texel_count = first_texel;
@@ -205,7 +228,13 @@ impl GpuScene {
     /// [`Context::submit`].
     pub fn upload(context: &Context, scene: &Scene) -> Result<GpuScene> {
         let counts = check(scene)?;
-        let arrays = Arrays::new(context, counts.vertices, counts.triangles, scene.meshes.iter().any(|mesh| !mesh.colours.is_empty()))?;
+        let arrays = Arrays::new(
+            context,
+            counts.vertices,
+            counts.triangles,
+            scene.meshes.iter().any(|mesh| !mesh.colours.is_empty()),
+            has_opacities(scene),
+        )?;
         let mut ranges = Vec::with_capacity(scene.meshes.len());
         let mut starts = Vec::with_capacity(scene.meshes.len());
         let (mut first_vertex, mut first_triangle) = (0, 0);
@@ -262,6 +291,7 @@ impl GpuScene {
             uvs: self.arrays.uvs.address(),
             surrounds: self.arrays.surrounds.address(),
             colours: self.arrays.colours.as_ref().map_or(0, Buffer::address),
+            opacities: self.arrays.opacities.as_ref().map_or(0, Buffer::address),
             mesh_starts: self.mesh_starts.address(),
             materials: self.surfaces.materials.address(),
             textures: self.surfaces.textures.address(),
@@ -411,6 +441,11 @@ impl GpuScene {
         self.surfaces.has_mirrors
     }
 
+    /// Whether any material is seen through.
+    pub fn has_blends(&self) -> bool {
+        self.surfaces.has_blends
+    }
+
     /// Brings the positions back to the host, as the grid is built of them; those that no triangle names may hold anything.
     ///
     /// # Errors
@@ -501,6 +536,9 @@ pub(crate) fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), String> {
     if !mesh.colours.is_empty() && mesh.colours.len() != count {
         return Err(format!("mesh {}: {} colours for {count} positions", mesh.name, mesh.colours.len()));
     }
+    if !mesh.opacities.is_empty() && mesh.opacities.len() != count {
+        return Err(format!("mesh {}: {} opacities for {count} positions", mesh.name, mesh.opacities.len()));
+    }
     if mesh.materials.len() != mesh.indices.len() {
         return Err(format!("mesh {}: {} materials for {} triangles", mesh.name, mesh.materials.len(), mesh.indices.len()));
     }
@@ -540,7 +578,11 @@ fn check_surfaces(scene: &Scene) -> Result<()> {
 /// Words of an array that a kernel can index: SPIR-V takes indices as signed.
 const MAX_WORDS: u32 = i32::MAX as u32;
 
-fn device_material(material: &Material, textures: &[Texture]) -> layout::Material {
+fn has_opacities(scene: &Scene) -> bool {
+    scene.meshes.iter().any(|mesh| !mesh.opacities.is_empty())
+}
+
+fn device_material(material: &Material, textures: &[Texture], has_opacities: bool) -> layout::Material {
     let mut flags = 0;
     if material.illumination >= 3 && material.specular.iter().any(|&value| value > 0.0) {
         flags |= layout::MATERIAL_MIRROR;
@@ -548,12 +590,17 @@ fn device_material(material: &Material, textures: &[Texture]) -> layout::Materia
     if material.normal_map_is_height {
         flags |= layout::MATERIAL_HEIGHT_MAP;
     }
-    // A mask without a hole is none: such a scene is traced by the library's own kernels, which are faster.
+    // A mask without a hole is none, and what is solid everywhere is not seen through: a scene without either is traced by the library's
+    // own kernels, which are faster.
+    let solid = if material.blend { 1.0 } else { 0.5 };
     let opacity_map = material.opacity_map.filter(|&map| {
         textures
             .get(map as usize)
-            .is_some_and(|texture| texture.pixels.chunks_exact(4).any(|texel| f32::from(texel[3]) / 255.0 * material.opacity < 0.5))
+            .is_some_and(|texture| texture.pixels.chunks_exact(4).any(|texel| f32::from(texel[3]) / 255.0 * material.opacity < solid))
     });
+    if material.blend && (material.opacity < 1.0 || opacity_map.is_some() || has_opacities) {
+        flags |= layout::MATERIAL_BLEND;
+    }
     let map = |map: Option<u32>| map.unwrap_or(layout::NO_MAP);
     layout::Material {
         diffuse: material.diffuse,

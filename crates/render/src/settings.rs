@@ -3,7 +3,8 @@
 use crate::{BuildStats, Error, Layers, Result, StepTime};
 use std::{fmt, str::FromStr};
 
-/// A layer of a picture other than its beauty: what the ray through the middle of each pixel met, whatever the number of samples.
+/// A layer of a picture other than its beauty: what the ray through the middle of each pixel met, whatever the number of samples. A surface
+/// that is seen through counts as met where there is anything of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Aov {
@@ -204,6 +205,8 @@ pub struct RayCounts {
     pub shadow: u64,
     /// Mirrored.
     pub reflection: u64,
+    /// Straight on, behind surfaces that are seen through.
+    pub passed: u64,
     /// Given up because their walk was too long. They count as seeing nothing, or as shadow.
     pub unfinished: u64,
 }
@@ -211,7 +214,7 @@ pub struct RayCounts {
 impl RayCounts {
     /// All kinds.
     pub const fn total(&self) -> u64 {
-        self.camera + self.shadow + self.reflection
+        self.camera + self.shadow + self.reflection + self.passed
     }
 }
 

@@ -2,13 +2,17 @@
 //!
 //! A batch of pixels goes through these steps, sample by sample: camera rays; closest hit; shade; then for each light: flag what it may
 //! reach, compact, any hit, add; then compact what reflects into the next bounce's queue. Every step but the compaction is a map.
+//!
+//! Where surfaces are seen through, a hit may send a ray on both ways. The next queue then holds the reflected ray of each pixel, or else
+//! the last of its rays that wait to go straight on, so that a pixel is still in a queue once at most: a bounce is any of these. How many
+//! there will be nobody knows beforehand: the host looks at the next queue's length after each submission, and ends with an empty one.
 
 use crate::{
     Buffer, Context, Error, Frame, FrameStats, GpuScene, Grid, Progress, RenderSettings, Result,
     camera::{camera_frame, sample_offset},
     compact::{Compaction, CompactionInfo},
     kernels,
-    layout::{CameraFrame, Film, FirstHitRecord, QueueHeader},
+    layout::{CameraFrame, Film, FirstHitRecord, QueueHeader, WaitingRay, Ways},
     picture::Picture,
     pipeline::{Pipeline, Recorder, Timer, map_groups},
     push,
@@ -20,7 +24,7 @@ use gridwalk::{RayCount, TraceInfo};
 use gridwalk_scene::Camera;
 use std::{
     ops::ControlFlow,
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
     time::Instant,
 };
 
@@ -37,6 +41,8 @@ pub struct Renderer {
     compaction: Compaction,
     masked_closest: Masked,
     masked_any: Masked,
+    /// Made by the first picture that needs them.
+    blending: Mutex<Option<Arc<Blending>>>,
     /// Of the last picture: the next one is often like it.
     kept: Mutex<Kept>,
 }
@@ -46,6 +52,25 @@ pub struct Renderer {
 struct Kept {
     queues: Option<Queues>,
     timer: Option<Timer>,
+}
+
+/// What takes the place of other kernels where surfaces are seen through.
+struct Blending {
+    shade: Pipeline,
+    light_pass: Masked,
+    light_add: Pipeline,
+    ways_emit: Pipeline,
+}
+
+impl Blending {
+    fn new(context: &Context) -> Result<Blending> {
+        Ok(Blending {
+            shade: Pipeline::new(context, &kernels::SHADE, &[("BLEND", 1)])?,
+            light_pass: Masked::new(context, &kernels::LIGHT_PASS)?,
+            light_add: Pipeline::new(context, &kernels::LIGHT_ADD, &[("BLEND", 1)])?,
+            ways_emit: Pipeline::new(context, &kernels::WAYS_EMIT, &[])?,
+        })
+    }
 }
 
 /// A walk with masks: its first dispatch, one that goes on, and the last, which reports what is still not done.
@@ -97,6 +122,13 @@ enum Step {
     Reflect { bounce: u32 },
 }
 
+/// Most queues of a sample where surfaces are seen through: rays that a pixel sends on one after another, by reflection or straight on. What
+/// is left then is given up, and counted as unfinished.
+const MOST_WAYS: u32 = 256;
+
+/// Most bytes of the rays that wait; a batch has fewer pixels where many reflections would need more.
+const WAITING_BYTES: u64 = 128 << 20;
+
 /// One picture as it is made, a batch of pixels at a time.
 struct Batch<'a> {
     renderer: &'a Renderer,
@@ -104,8 +136,13 @@ struct Batch<'a> {
     grid: &'a Grid,
     queues: Queues,
     camera: CameraFrame,
+    /// Reflections that are followed.
     depth: u32,
+    /// Queues of a sample, the camera's included.
+    bounces: u32,
     shade_flags: u32,
+    /// Where surfaces are seen through.
+    blending: Option<Arc<Blending>>,
 }
 
 /// The pixels that a submission is about.
@@ -135,6 +172,7 @@ impl Renderer {
             compaction: Compaction::new(context)?,
             masked_closest: Masked::new(context, &kernels::MASKED_CLOSEST_HIT)?,
             masked_any: Masked::new(context, &kernels::MASKED_ANY_HIT)?,
+            blending: Mutex::default(),
             kept: Mutex::default(),
         })
     }
@@ -146,6 +184,14 @@ impl Renderer {
 
     fn kept(&self) -> MutexGuard<'_, Kept> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn blending(&self) -> Result<Arc<Blending>> {
+        let mut made = self.blending.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*made {
+            Some(blending) => Ok(Arc::clone(blending)),
+            None => Ok(Arc::clone(made.insert(Arc::new(Blending::new(&self.context)?)))),
+        }
     }
 
     /// The queues of the last picture if they are of this shape, else new ones.
@@ -174,7 +220,12 @@ impl Renderer {
         let crop = settings.check()?;
         let begin = Instant::now();
         let pixels = crop.width * crop.height;
-        let capacity = pixels.min(settings.batch).min(self.context.rays_per_submission());
+        let mut capacity = pixels.min(settings.batch).min(self.context.rays_per_submission());
+        if scene.has_blends() {
+            let pixel_bytes = size_of::<WaitingRay>() as u64 * (u64::from(followed(scene, settings)) + 1);
+            // At least one pixel: 1,024 reflections are the most.
+            capacity = capacity.min(u32::try_from(WAITING_BYTES / pixel_bytes).unwrap_or(u32::MAX));
+        }
         let batch = Batch::new(self, scene, grid, settings, capacity, camera_frame(camera, settings, crop)?)?;
         let kept = self.kept().timer.take();
         let mut timer = kept.map_or_else(|| Timer::new(&self.context), Ok)?;
@@ -211,14 +262,22 @@ impl Renderer {
             }
             for sample in 0..settings.spp {
                 let span = Span { first, count, offset: sample_offset(sample, settings.spp) };
-                for steps in &plan {
+                let mut used = if batch.blending.is_some() { 1 } else { batch.bounces };
+                for (index, steps) in plan.iter().enumerate() {
                     let with_layers = steps.iter().filter(|step| !(layers_apart && matches!(step, Step::FirstHit)));
                     let steps: Vec<Step> = with_layers.copied().collect();
                     batch.submit(&mut timer, span, clear, &steps)?;
                     clear = false;
+                    let is_over = batch.blending.is_some() && batch.is_over(&steps, &mut used)?;
+                    if is_over {
+                        done += (plan.len() - index - 1) as u64;
+                    }
                     report(&mut stats, &mut done, u64::from(first))?;
+                    if is_over {
+                        break;
+                    }
                 }
-                batch.count_rays(&mut stats)?;
+                batch.count_rays(&mut stats, used)?;
             }
             let read = Instant::now();
             batch.read(&mut picture, first, count, &mut stats)?;
@@ -227,7 +286,7 @@ impl Renderer {
         }
         stats.steps = timer.take();
         *self.kept() = Kept { queues: Some(batch.queues), timer: Some(timer) };
-        let traces = ["closest_hit", "any_hit", "masked_closest_hit", "masked_any_hit"];
+        let traces = ["closest_hit", "any_hit", "masked_closest_hit", "masked_any_hit", "light_pass"];
         stats.trace_ms = stats.steps.iter().filter(|step| traces.contains(&step.name)).map(|step| step.ms).sum();
         let read = Instant::now();
         let layers = picture.finish()?;
@@ -236,6 +295,14 @@ impl Renderer {
         Ok(Frame { layers, stats, build: grid.stats().clone() })
     }
 }
+
+/// Reflections that can have a ray: none without a mirror.
+fn followed(scene: &GpuScene, settings: &RenderSettings) -> u32 {
+    if scene.has_mirrors() { settings.depth } else { 0 }
+}
+
+/// Most queue headers.
+const MOST_HEADERS: u32 = 1 << 20;
 
 impl<'a> Batch<'a> {
     fn new(
@@ -246,10 +313,14 @@ impl<'a> Batch<'a> {
         capacity: u32,
         camera: CameraFrame,
     ) -> Result<Batch<'a>> {
-        // Without a mirror no bounce has a ray.
-        let depth = if scene.has_mirrors() { settings.depth } else { 0 };
-        let headers = (depth + 1).checked_mul(scene.light_count() + 1).filter(|&headers| headers <= 1 << 20).ok_or_else(|| {
-            Error::Setting { setting: "depth", value: settings.depth.to_string(), expected: "fewer reflections for so many lights" }
+        let depth = followed(scene, settings);
+        let each = scene.light_count() + 1;
+        let least = depth + 1;
+        let bounces = if scene.has_blends() { least.max(MOST_WAYS.min(MOST_HEADERS / each)) } else { least };
+        let headers = bounces.checked_mul(each).filter(|&headers| headers <= MOST_HEADERS).ok_or_else(|| Error::Setting {
+            setting: "depth",
+            value: settings.depth.to_string(),
+            expected: "fewer reflections for so many lights",
         })?;
         let queues = renderer.queues(QueueShape {
             capacity,
@@ -257,9 +328,11 @@ impl<'a> Batch<'a> {
             has_layers: !settings.aovs.is_empty(),
             has_counts: settings.aovs.iter().any(|aov| aov.is_count()),
             scratch: grid.tracer()?.trace_scratch_size(capacity)?.size,
+            waiting: if scene.has_blends() { depth + 1 } else { 0 },
         })?;
         let shade_flags = if settings.transparent { SHADE_TRANSPARENT } else { 0 };
-        Ok(Batch { renderer, scene, grid, queues, camera, depth, shade_flags })
+        let blending = if scene.has_blends() { Some(renderer.blending()?) } else { None };
+        Ok(Batch { renderer, scene, grid, queues, camera, depth, bounces, shade_flags, blending })
     }
 
     /// The steps of a sample, cut into submissions.
@@ -268,10 +341,10 @@ impl<'a> Batch<'a> {
         if self.queues.records.is_some() {
             steps.push(Step::FirstHit);
         }
-        for bounce in 0..=self.depth {
+        for bounce in 0..self.bounces {
             steps.push(Step::Shade { bounce });
             steps.extend((0..self.scene.light_count()).map(|light| Step::Light { bounce, light }));
-            if bounce < self.depth {
+            if bounce + 1 < self.bounces {
                 steps.push(Step::Reflect { bounce });
             }
         }
@@ -308,7 +381,8 @@ impl<'a> Batch<'a> {
             let mut recorder = Recorder::new(context, cmd, timer);
             if clear {
                 recorder.step("clear", "copy", |cmd| {
-                    for buffer in [&self.queues.film, &self.queues.unfinished] {
+                    let ways = self.queues.ways.as_ref().map(|set| &set.ways);
+                    for buffer in [&self.queues.film, &self.queues.unfinished].into_iter().chain(ways) {
                         // SAFETY: the command buffer is recording; the buffer lives and its size is a multiple of 4.
                         unsafe { context.device().cmd_fill_buffer(cmd, buffer.raw(), 0, vk::WHOLE_SIZE, 0) };
                     }
@@ -360,13 +434,15 @@ impl<'a> Batch<'a> {
                 }
             }
             Step::Shade { bounce } => {
-                let mut flags = 0;
+                // With ways, the kernel itself knows which rays are still the camera's.
+                let mut flags = if bounce == 0 || self.blending.is_some() { self.shade_flags } else { 0 };
                 if bounce == 0 {
-                    flags |= SHADE_CAMERA | self.shade_flags;
+                    flags |= SHADE_CAMERA;
                 }
-                if bounce == self.depth {
+                if bounce + 1 == self.bounces {
                     flags |= SHADE_LAST;
                 }
+                let ways = self.queues.ways.as_ref();
                 let push = push::Shade {
                     scene,
                     queue: self.header(bounce, None),
@@ -377,10 +453,15 @@ impl<'a> Batch<'a> {
                     surfaces: self.queues.surfaces.address(),
                     reflects: self.queues.reflects.address(),
                     unfinished: self.queues.unfinished.address(),
+                    ways: ways.map_or(0, |set| set.ways.address()),
+                    waiting: ways.map_or(0, |set| set.waiting.address()),
                     flags,
+                    depth: self.depth,
+                    capacity: self.queues.shape.capacity,
                     padding: 0,
                 };
-                self.map(recorder, &renderer.shade, &push, self.header_offset(bounce, None));
+                let pipeline = self.blending.as_ref().map_or(&renderer.shade, |blending| &blending.shade);
+                self.map(recorder, pipeline, &push, self.header_offset(bounce, None));
             }
             Step::Light { bounce, light } => {
                 let queue = self.header(bounce, None);
@@ -413,22 +494,40 @@ impl<'a> Batch<'a> {
                     film: self.queues.film.address(),
                     unfinished: self.queues.unfinished.address(),
                 };
-                self.map(recorder, &renderer.light_add, &push, self.header_offset(bounce, Some(light)));
+                let pipeline = self.blending.as_ref().map_or(&renderer.light_add, |blending| &blending.light_add);
+                self.map(recorder, pipeline, &push, self.header_offset(bounce, Some(light)));
             }
             Step::Reflect { bounce } => {
                 let queue = self.header(bounce, None);
                 self.compact(recorder, queue, &self.queues.reflects, self.header(bounce + 1, None));
-                let push = push::ReflectEmit {
-                    queue,
-                    rays: self.queues.rays[here(bounce)].address(),
-                    surfaces: self.queues.surfaces.address(),
-                    paths: self.queues.paths[here(bounce)].address(),
-                    reflects: self.queues.reflects.address(),
-                    offsets: self.queues.offsets.address(),
-                    next_rays: self.queues.rays[here(bounce + 1)].address(),
-                    next_paths: self.queues.paths[here(bounce + 1)].address(),
-                };
-                self.map(recorder, &renderer.reflect_emit, &push, self.header_offset(bounce, None));
+                let rays = self.queues.rays[here(bounce)].address();
+                let surfaces = self.queues.surfaces.address();
+                let paths = self.queues.paths[here(bounce)].address();
+                let reflects = self.queues.reflects.address();
+                let offsets = self.queues.offsets.address();
+                let next_rays = self.queues.rays[here(bounce + 1)].address();
+                let next_paths = self.queues.paths[here(bounce + 1)].address();
+                let header = self.header_offset(bounce, None);
+                if let (Some(blending), Some(set)) = (&self.blending, &self.queues.ways) {
+                    let push = push::WaysEmit {
+                        queue,
+                        rays,
+                        surfaces,
+                        paths,
+                        flags: reflects,
+                        offsets,
+                        ways: set.ways.address(),
+                        waiting: set.waiting.address(),
+                        next_rays,
+                        next_paths,
+                        capacity: self.queues.shape.capacity,
+                        padding: 0,
+                    };
+                    self.map(recorder, &blending.ways_emit, &push, header);
+                } else {
+                    let push = push::ReflectEmit { queue, rays, surfaces, paths, reflects, offsets, next_rays, next_paths };
+                    self.map(recorder, &renderer.reflect_emit, &push, header);
+                }
                 self.closest_hit(recorder, bounce + 1, None)?;
             }
         }
@@ -463,8 +562,9 @@ impl<'a> Batch<'a> {
     fn closest_hit(&self, recorder: &mut Recorder<'_>, bounce: u32, counters: Option<&Buffer>) -> Result<()> {
         let rays = &self.queues.rays[(bounce % 2) as usize];
         let header = self.header_offset(bounce, None);
+        let looks_closer = self.scene.has_masks() || self.scene.has_blends();
         // Only the library's walk counts: with masks it runs for its counts alone.
-        if counters.is_some() || !self.scene.has_masks() {
+        if counters.is_some() || !looks_closer {
             let tracer = self.grid.tracer()?;
             let info = TraceInfo { counters: counters.map(Buffer::region), ..self.trace_info(rays, &self.queues.hits, header) };
             recorder.step("closest_hit", "map", |cmd| {
@@ -473,7 +573,7 @@ impl<'a> Batch<'a> {
                 unsafe { tracer.cmd_closest_hit(cmd, self.grid.address(), &info) }
             })?;
         }
-        if self.scene.has_masks() {
+        if looks_closer {
             let push = push::MaskedClosestHit {
                 grid: self.grid.address(),
                 scene: self.scene.table(),
@@ -491,6 +591,20 @@ impl<'a> Batch<'a> {
 
     fn any_hit(&self, recorder: &mut Recorder<'_>, bounce: u32, light: u32) -> Result<()> {
         let header = self.header_offset(bounce, Some(light));
+        if let Some(blending) = &self.blending {
+            let push = push::LightPass {
+                grid: self.grid.address(),
+                scene: self.scene.table(),
+                queue: self.queues.headers.address() + header,
+                rays: self.queues.shadow_rays.address(),
+                passed: self.queues.occluded.address(),
+                walks: self.queues.scratch.address(),
+            };
+            for pipeline in blending.light_pass.variants() {
+                self.map(recorder, pipeline, &push, header);
+            }
+            return Ok(());
+        }
         if self.scene.has_masks() {
             let push = push::MaskedAnyHit {
                 grid: self.grid.address(),
@@ -514,10 +628,25 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Adds the lengths of a sample's queues.
-    fn count_rays(&self, stats: &mut FrameStats) -> Result<()> {
+    /// After a submission: whether no pixel has a ray left. `used` becomes the number of queues that have been walked over.
+    fn is_over(&self, steps: &[Step], used: &mut u32) -> Result<bool> {
+        let last = steps.iter().rev().find_map(|step| match step {
+            Step::Reflect { bounce } => Some(bounce + 1),
+            _ => None,
+        });
+        let Some(next) = last else { return Ok(false) };
+        let at = self.header_offset(next, None);
+        let header = self.queues.headers.read_by::<QueueHeader>(self.queues.readback.as_ref(), at, 1)?;
+        let is_over = header.first().is_none_or(|header| header.count == 0);
+        // Of an empty queue the lights were not all walked over.
+        *used = if is_over { next } else { next + 1 };
+        Ok(is_over)
+    }
+
+    /// Adds the lengths of a sample's queues, of which so many were used.
+    fn count_rays(&self, stats: &mut FrameStats, used: u32) -> Result<()> {
         let lights = self.scene.light_count() as usize;
-        let headers = self.queues.fetch::<QueueHeader>(&self.queues.headers, (self.depth as usize + 1) * (lights + 1))?;
+        let headers = self.queues.fetch::<QueueHeader>(&self.queues.headers, used as usize * (lights + 1))?;
         for (bounce, queues) in headers.chunks_exact(lights + 1).enumerate() {
             let count = u64::from(queues[0].count);
             if bounce == 0 {
@@ -534,6 +663,13 @@ impl<'a> Batch<'a> {
         let film = self.queues.fetch::<Film>(&self.queues.film, count as usize)?;
         let unfinished = self.queues.fetch::<u32>(&self.queues.unfinished, count as usize)?;
         stats.rays.unfinished += unfinished.iter().map(|&rays| u64::from(rays)).sum::<u64>();
+        if let Some(set) = &self.queues.ways {
+            let ways = self.queues.fetch::<Ways>(&set.ways, count as usize)?;
+            let passed = ways.iter().map(|way| u64::from(way.passed)).sum::<u64>();
+            // They were counted as all that comes after the camera's.
+            stats.rays.passed += passed;
+            stats.rays.reflection = stats.rays.reflection.saturating_sub(passed);
+        }
         picture.add_film(first, &film);
         if let Some(records) = &self.queues.records {
             let records = self.queues.fetch::<FirstHitRecord>(records, count as usize)?;

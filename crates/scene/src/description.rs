@@ -223,6 +223,7 @@ struct MaterialEntry {
     shininess: Option<Spanned<Number>>,
     emission: Option<Colour>,
     opacity: Option<Spanned<Number>>,
+    blend: Option<bool>,
     index_of_refraction: Option<Number>,
     illumination: Option<Spanned<u32>>,
     mirror: Option<bool>,
@@ -853,6 +854,7 @@ impl Builder<'_> {
             None if entry.specular.is_some() => 2,
             None => defaults.illumination,
         };
+        let opacity = entry.opacity.as_ref().map_or(Ok(defaults.opacity), |value| source.within("opacity", value, 0.0, 1.0))?;
         let specular = given(entry.specular, specular_map, if mirror { [1.0; 3] } else { defaults.specular });
         Ok(Material {
             name: entry.name.get_ref().clone(),
@@ -860,7 +862,8 @@ impl Builder<'_> {
             specular,
             shininess: entry.shininess.as_ref().map_or(Ok(defaults.shininess), |value| source.within("shininess", value, 0.0, 1e6))?,
             emission: given(entry.emission, emission_map, defaults.emission),
-            opacity: entry.opacity.as_ref().map_or(Ok(defaults.opacity), |value| source.within("opacity", value, 0.0, 1.0))?,
+            opacity,
+            blend: entry.blend.unwrap_or(opacity < 1.0),
             index_of_refraction: entry.index_of_refraction.map_or(defaults.index_of_refraction, |value| value.0),
             illumination,
             diffuse_map,

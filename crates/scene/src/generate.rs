@@ -327,6 +327,11 @@ pub fn merge(meshes: &[Mesh]) -> Mesh {
             merged.colours.extend_from_slice(&mesh.colours);
             merged.colours.resize(merged.positions.len(), [1.0; 3]);
         }
+        if !(merged.opacities.is_empty() && mesh.opacities.is_empty()) {
+            merged.opacities.resize(first as usize, 1.0);
+            merged.opacities.extend_from_slice(&mesh.opacities);
+            merged.opacities.resize(merged.positions.len(), 1.0);
+        }
         merged.indices.extend(mesh.indices.iter().map(|triangle| triangle.map(|at| at + first)));
         merged.materials.extend_from_slice(&mesh.materials);
     }

@@ -12,6 +12,11 @@
 //! | `name.gltf`, `name.glb` | a scene with all that moves in it |
 //! | `name.toml`, or a folder with a `scene.toml` | a scene file |
 //!
+//! # MTL
+//! `Kd`, `Ks`, `Ke`, `Ns`, `Ni`, `illum` (3 and above mirrors) and their maps. `d`, or 1 - `Tr` where there is no `d`, below 1 makes a surface
+//! that is seen and lit through, times `map_d`; `Tr 1` alone is taken as solid, which a warning tells, since it mostly means that. With `d 1`
+//! a `map_d`, or the alpha of `map_Kd`, is a mask and cut at one half.
+//!
 //! # glTF
 //! glTF 2.0 as `.gltf` (with `data:` uris, or files beside it) and `.glb`. Each primitive of each mesh on a node of the default scene is a
 //! mesh. One clip is played, and begins anew at its end: nodes move by `STEP`, `LINEAR` and `CUBICSPLINE` keys, vertices by up to eight
@@ -24,7 +29,8 @@
 //! - diffuse is c (1 - m g);
 //! - the Blinn-Phong exponent is n = 2 / r⁴ - 2, and a surface that is no mirror has highlights of (c m g + f (1 - m)) (n + 8) / 8, 1 at most;
 //! - a texture of metallic and roughness makes diffuse and specular textures, and its mean roughness the exponent;
-//! - alpha is cut at `alphaCutoff`, or for `BLEND` at one half, which a warning tells; both sides of all surfaces are seen;
+//! - alpha is cut at `alphaCutoff` for `MASK`; for `BLEND` a surface of opacity a (factor x texture x `COLOR_0`) shows a times itself, its
+//!   mirror and highlights included, and 1 - a times what lies behind, and lets 1 - a of all light through; both sides of all are seen;
 //! - `KHR_materials_unlit` emits its base colour; `KHR_materials_emissive_strength` multiplies the emission; emission lights nothing else.
 //!
 //! Textures of a material are looked up by the coordinates of its first one (base colour, metallic-roughness, emission, normals), with
@@ -71,12 +77,13 @@
 //! outer = 30
 //! intensity = [20, 18, 15]
 //!
-//! [[material]]                             # also emission, opacity, index_of_refraction, illumination, and maps: diffuse_map = "a.png",
+//! [[material]]                             # also emission, index_of_refraction, illumination, and maps: diffuse_map = "a.png",
 //! name = "steel"                           # specular_map, emission_map, opacity_map, normal_map or bump_map, bump_scale
 //! diffuse = 0.1
 //! specular = 0.8
 //! shininess = 200
 //! mirror = true                            # as illumination = 3
+//! opacity = 0.4                            # below 1 it is seen and lit through, as glTF's BLEND; so is what has blend = true, by opacity_map
 //!
 //! [[mesh]]
 //! file = "teapot.obj"

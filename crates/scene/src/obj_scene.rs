@@ -134,6 +134,19 @@ fn resolve(assets: &mut Assets, from: &MtlMaterial, folder: &Path, file: &str) -
     let bump_is_height = bumps.is_some_and(|map| assets.textures.is_height(map));
 
     let defaults = Material::default();
+    // `d` goes before `Tr`: files that have both often have `Tr` the wrong way round.
+    let opacity = match (from.dissolve, from.transparency) {
+        (Some(dissolve), _) => dissolve,
+        (None, Some(transparency)) if transparency >= 1.0 && opacity_map.is_none() => {
+            let name = &from.name;
+            assets
+                .warnings
+                .push(format!("{file}: Tr 1 would leave nothing of {name} to be seen; it is taken as solid (say d 0 to hide it)"));
+            1.0
+        }
+        (None, Some(transparency)) => 1.0 - transparency,
+        (None, None) => defaults.opacity,
+    };
     // A map without its factor is meant to be seen as it is.
     let factor = |map: Option<u32>, absent: [f32; 3]| if map.is_some() { [1.0; 3] } else { absent };
     Material {
@@ -142,8 +155,8 @@ fn resolve(assets: &mut Assets, from: &MtlMaterial, folder: &Path, file: &str) -
         specular: from.specular.unwrap_or(factor(specular_map, defaults.specular)),
         shininess: from.shininess.unwrap_or(defaults.shininess),
         emission: from.emission.unwrap_or(factor(emission_map, defaults.emission)),
-        // `d` goes before `Tr`: files that have both often have `Tr` the wrong way round.
-        opacity: from.dissolve.or(from.transparency.map(|transparency| 1.0 - transparency)).unwrap_or(defaults.opacity),
+        opacity,
+        blend: opacity < 1.0,
         index_of_refraction: from.index_of_refraction.unwrap_or(defaults.index_of_refraction),
         illumination: from.illumination.unwrap_or(if from.specular.is_some() { 2 } else { defaults.illumination }),
         diffuse_map,

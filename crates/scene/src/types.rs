@@ -40,6 +40,9 @@ pub struct Mesh {
     /// Colours that multiply the diffuse colour of the material, linear RGB, one a vertex; empty where the file has none, which is as if all
     /// were one.
     pub colours: Vec<[f32; 3]>,
+    /// Opacities that multiply that of the material where that is [`Material::blend`], from 0 to 1, one a vertex; empty where the file has
+    /// none, which is as if all were one.
+    pub opacities: Vec<f32>,
     /// Three vertex indices a triangle, each below `positions.len()`.
     pub indices: Vec<[u32; 3]>,
     /// One index into [`Scene::materials`] a triangle.
@@ -59,8 +62,11 @@ pub struct Material {
     pub shininess: f32,
     /// `Ke`, emitted radiance, multiplied with `emission_map`.
     pub emission: [f32; 3],
-    /// `d` (or 1 - `Tr`), 0 to 1.
+    /// `d` (or 1 - `Tr`), 0 to 1, multiplied with `opacity_map`.
     pub opacity: f32,
+    /// Whether what lies behind is seen through the surface by the share that its opacity leaves, and lit through it; else a surface with an
+    /// `opacity_map` is cut where its opacity is below one half, and one without is solid whatever its opacity.
+    pub blend: bool,
     /// `Ni`.
     pub index_of_refraction: f32,
     /// `illum`: 3 and above reflects as a mirror, weighted by `specular`.
@@ -92,6 +98,7 @@ impl Default for Material {
             shininess: 10.0,
             emission: [0.0; 3],
             opacity: 1.0,
+            blend: false,
             index_of_refraction: 1.0,
             illumination: 1,
             diffuse_map: None,
@@ -251,6 +258,7 @@ impl Mesh {
             + size_of_val(&*self.normals)
             + size_of_val(&*self.uvs)
             + size_of_val(&*self.colours)
+            + size_of_val(&*self.opacities)
             + size_of_val(&*self.indices)
             + size_of_val(&*self.materials);
         bytes as u64

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Writes the reflected rays of the flagged surfaces side by side, in order.
 
-#include "render/shared/queue.glsl"
+#include "render/shared/reflect.glsl"
 
 layout(local_size_x_id = 0, local_size_x = 64) in;
 
@@ -24,20 +24,9 @@ void main() {
         return;
     }
     Surface surface = surfaces.surface[i];
-    vec3 incoming = normalize(rays.ray[i].direction);
-    vec3 outgoing = reflect(incoming, surface.normal);
-    // A smooth or mapped normal may mirror the ray into the surface: the triangle's own does not.
-    if (!(dot(outgoing, surface.geometric_normal) > 0.0)) {
-        outgoing = reflect(incoming, surface.geometric_normal);
-    }
-    Ray ray;
-    ray.origin = surface.start + surface.geometric_normal * surface.offset;
-    ray.t_min = 0.0;
-    ray.direction = normalize(outgoing);
-    ray.t_max = GRIDWALK_INFINITY;
     Path path = paths.path[i];
     path.weight *= surface.specular;
     uint place = offsets.word[i];
-    next_rays.ray[place] = ray;
+    next_rays.ray[place] = reflected_ray(surface, rays.ray[i].direction);
     next_paths.path[place] = path;
 }

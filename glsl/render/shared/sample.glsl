@@ -77,9 +77,28 @@ vec3 background_radiance(SceneIn scene, vec3 direction) {
     return mix(upper, lower, at - float(y0));
 }
 
-// Whether a candidate is solid: its mask, where it has one, is at least one half.
+// How much a blended surface holds back of what comes from behind, 0 to 1.
+float blended_opacity(SceneIn scene, Material material, uint triangle, float u, float v) {
+    float opacity = material.opacity;
+    uvec3 vertex = scene_indices(scene, triangle);
+    if (material.opacity_map != NO_MAP) {
+        opacity *= sample_texture(scene, material.opacity_map, scene_uv(scene, vertex, u, v)).a;
+    }
+    if (scene.table.opacities != uvec2(0u)) {
+        SceneFloats opacities = SceneFloats(scene.table.opacities);
+        float a = opacities.word[vertex.x];
+        // Where all are one it is exactly one, as without any.
+        opacity *= a + (opacities.word[vertex.y] - a) * u + (opacities.word[vertex.z] - a) * v;
+    }
+    return clamp(opacity, 0.0, 1.0);
+}
+
+// Whether a candidate is solid: its mask, where it has one, is at least one half. Of a blended surface: whether there is anything of it.
 bool is_solid(SceneIn scene, uint triangle, float u, float v) {
     Material material = Materials(scene.table.materials).material[Surrounds(scene.table.surrounds).triangle[triangle].material];
+    if ((material.flags & MATERIAL_BLEND) != 0u) {
+        return blended_opacity(scene, material, triangle, u, v) > 0.0;
+    }
     if (material.opacity_map == NO_MAP) {
         return true;
     }

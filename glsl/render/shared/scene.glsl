@@ -8,6 +8,7 @@
 const uint NO_MAP = 0xFFFFFFFFu;
 const uint MATERIAL_MIRROR = 1u;
 const uint MATERIAL_HEIGHT_MAP = 2u;
+const uint MATERIAL_BLEND = 4u; // the opacity is a share, not a mask
 
 struct Material {
     vec3 diffuse;
@@ -85,7 +86,7 @@ struct SceneTable {
     uvec2 srgb; // linear value of each of the 256 codes
     uvec2 lights;
     uvec2 panorama; // three floats a pixel, rows from the top
-    uvec2 reserved;
+    uvec2 opacities; // of vertices, a float each; 0 where no mesh has any
     vec3 ambient;
     uint triangle_count;
     Background background;

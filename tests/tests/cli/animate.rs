@@ -113,6 +113,58 @@ fn a_frame_is_what_it_is_alone() {
     assert!(plane_error(0, &stills[4]) > 5.0, "the comparison tells frames apart");
 }
 
+/// A glTF file of an unlit red wall, and an unlit blue pane before it that goes to the right within a second.
+fn pane(folder: &Path) {
+    let corners: [[f32; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+    let mut bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
+    bytes.extend([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes()));
+    bytes.extend([0.0_f32, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0].iter().flat_map(|value| value.to_le_bytes()));
+    let view = |offset: usize, length: usize| serde_json::json!({ "buffer": 0, "byteOffset": offset, "byteLength": length });
+    let accessor = |view: u32, kind: u32, count: u32, width: &str| serde_json::json!({ "bufferView": view, "componentType": kind, "count": count, "type": width });
+    let unlit = |colour: [f32; 4], mode: &str| serde_json::json!({ "pbrMetallicRoughness": { "baseColorFactor": colour }, "alphaMode": mode, "extensions": { "KHR_materials_unlit": {} } });
+    let primitive =
+        |material: u32| serde_json::json!({ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1, "material": material }] });
+    let json = serde_json::json!({
+        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0, 1] }],
+        "nodes": [{ "mesh": 0, "translation": [0.0, 0.0, -1.0], "scale": [4.0, 4.0, 1.0] }, { "mesh": 1 }],
+        "meshes": [primitive(0), primitive(1)],
+        "materials": [unlit([1.0, 0.0, 0.0, 0.5], "OPAQUE"), unlit([0.0, 0.0, 1.0, 0.25], "BLEND")],
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "animations": [{
+            "samplers": [{ "input": 2, "output": 3 }],
+            "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }]
+        }],
+        "bufferViews": [view(0, 48), view(48, 12), view(60, 8), view(68, 24)],
+        "accessors": [accessor(0, 5126, 4, "VEC3"), accessor(1, 5123, 6, "SCALAR"), accessor(2, 5126, 2, "SCALAR"), accessor(3, 5126, 2, "VEC3")],
+        "buffers": [{ "byteLength": bytes.len(), "uri": "pane.bin" }]
+    });
+    fs::write(folder.join("pane.gltf"), json.to_string()).unwrap();
+    fs::write(folder.join("pane.bin"), bytes).unwrap();
+}
+
+/// What glTF says of `BLEND`: a quarter of blue over three quarters of red, and all red beside it; and it moves.
+#[test]
+fn a_pane_is_seen_through_and_each_frame_is_the_one_rendered_alone() {
+    let folder = super::folder();
+    let at = folder.path();
+    pane(at);
+    let options = "--size 16x12 --eye 0,0,6";
+    let run =
+        gridwalk(at, words(&format!("animate pane.gltf {options} --fps 2 --frames 0..2 --aov id,depth -o f#.exr -o f#.png"))).expect(0);
+    assert!(!run.stderr.contains("BLEND"), "nothing is told of it: {}", run.stderr);
+    for frame in 0..3 {
+        gridwalk(at, words(&format!("render pane.gltf {options} --fps 2 --frame {frame} --aov id,depth -o alone.exr -o alone.png")))
+            .expect(0);
+        assert_eq!(without_text(at, "alone.exr"), without_text(at, &format!("f{frame}.exr")), "frame {frame}");
+        assert_eq!(pixels(at, "alone.png"), pixels(at, &format!("f{frame}.png")), "frame {frame}");
+        let layers = gridwalk_render::image::read(&at.join("alone.exr"), gridwalk_render::image::ReadLimits::default()).unwrap();
+        let beauty = layers.get("beauty").unwrap().floats().unwrap().to_vec();
+        let pixel = |x: usize, y: usize| [0, 1, 2].map(|channel| beauty[(y * 16 + x) * 4 + channel]);
+        assert_eq!(pixel(7, 6), [[0.75, 0.0, 0.25], [0.75, 0.0, 0.25], [1.0, 0.0, 0.0]][frame], "frame {frame}");
+    }
+    assert_ne!(pixels(at, "f0.png"), pixels(at, "f2.png"));
+}
+
 /// The decoded pixels of a file, all layers.
 fn without_text(folder: &Path, name: &str) -> Vec<(String, gridwalk_render::LayerData)> {
     let layers = gridwalk_render::image::read(&folder.join(name), gridwalk_render::image::ReadLimits::default()).unwrap();

@@ -16,6 +16,7 @@ fn crossing(triangles: u32) -> Scene {
         normals: vec![[0.0, 1.0, 0.0]; positions.len()],
         uvs: vec![[0.0; 2]; positions.len()],
         colours: Vec::new(),
+        opacities: Vec::new(),
         indices: (0..triangles).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         materials: Vec::new(),
         positions,

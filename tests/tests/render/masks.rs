@@ -7,17 +7,17 @@ use gridwalk_scene::{Camera, Light, Texture, generate};
 use super::*;
 
 /// A texture of `size` by `size` texels; the function is given column and row from the upper left.
-fn texture(size: u32, srgb: bool, texel: impl Fn(u32, u32) -> [u8; 4]) -> Texture {
+pub(super) fn texture(size: u32, srgb: bool, texel: impl Fn(u32, u32) -> [u8; 4]) -> Texture {
     let pixels: Vec<u8> = (0..size * size).flat_map(|i| texel(i % size, i / size)).collect();
     let has_alpha = pixels.chunks_exact(4).any(|texel| texel[3] < 255);
     Texture { name: "made".to_owned(), width: size, height: size, pixels, srgb, has_alpha }
 }
 
-fn facing() -> Camera {
+pub(super) fn facing() -> Camera {
     Camera { eye: [0.0, 0.0, 4.0], up: [0.0, 1.0, 0.0], orthographic_height: Some(2.0), ..from_above(1.0) }
 }
 
-fn square(z: f32) -> gridwalk_scene::Mesh {
+pub(super) fn square(z: f32) -> gridwalk_scene::Mesh {
     generate::quad([[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]])
 }
 

@@ -1,6 +1,7 @@
 //! Pictures: the device behind them, what the shading promises, and the blessed ones.
 
 mod bits;
+mod blend;
 mod context;
 mod grids;
 mod images;

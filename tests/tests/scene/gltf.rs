@@ -556,17 +556,38 @@ fn masks_are_cut_at_their_cutoff() {
     assert_eq!(case("MASK", 0.0, 1.0, &all), None);
     assert_eq!(case("MASK", 0.5, 0.4, &[255, 0]), Some(vec![false, false]), "never reached");
     assert_eq!(case("OPAQUE", 0.5, 1.0, &all), None);
-    assert_eq!(case("BLEND", 0.9, 1.0, &[127, 128]), Some(vec![false, true]));
-    assert_eq!(case("BLEND", 0.9, 1.0, &[255, 255]), None);
+}
 
-    let bare = |factor: f32| {
-        let pbr = json!({ "baseColorFactor": [1, 1, 1, factor] });
-        Maker::with_material(json!({ "alphaMode": "BLEND", "pbrMetallicRoughness": pbr })).animation().scene
+#[test]
+fn blending_is_factor_times_texture_times_vertex() {
+    let make = |mode: &str, alpha: &[u8]| {
+        let mut maker = Maker::with_material(json!({
+            "alphaMode": mode,
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "baseColorFactor": [1, 1, 1, 0.6] }
+        }));
+        let row: Vec<u8> = alpha.iter().flat_map(|&alpha| [9, 8, 7, alpha]).collect();
+        maker.texture(png::ColorType::Rgba, &row);
+        maker
     };
-    assert_eq!(bare(0.6).materials[1].opacity_map, None);
-    let scene = bare(0.3);
-    assert_eq!(texture(&scene, scene.materials[1].opacity_map).pixels, [0; 4]);
-    assert!(scene.warnings[0].contains("BLEND is read as a mask"), "{:?}", scene.warnings);
+    let scene = make("BLEND", &[0, 127, 255]).scene();
+    let material = &scene.materials[1];
+    assert_eq!((material.blend, material.opacity), (true, 0.6));
+    let map = texture(&scene, material.opacity_map);
+    assert_eq!((map.pixels.as_slice(), map.srgb), (&[0, 0, 0, 0, 127, 127, 127, 127, 255, 255, 255, 255][..], false));
+    assert_eq!(make("BLEND", &[255, 255]).scene().materials[1].opacity_map, None, "all solid");
+    let scene = make("OPAQUE", &[0, 127]).scene();
+    assert_eq!((scene.materials[1].blend, scene.materials[1].opacity, scene.materials[1].opacity_map), (false, 1.0, None));
+
+    let coloured = |mode: &str| {
+        let mut maker = make(mode, &[255]);
+        let colours = maker.floats(&[1.0, 0.5, 0.0, 0.25, 1.0, 1.0, 1.0, 7.0, 1.0, 1.0, 1.0, 1.0], "VEC4");
+        maker.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colours);
+        maker
+    };
+    let mesh = coloured("BLEND").only_mesh();
+    assert_eq!((mesh.opacities, mesh.colours[0]), (vec![0.25, 1.0, 1.0], [1.0, 0.5, 0.0]));
+    assert_eq!(coloured("OPAQUE").only_mesh().opacities, [0.0; 0]);
+    assert_eq!(coloured("MASK").warnings(), ["mesh 0, primitive 0: the alpha of its vertices' colours is not cut by alphaMode MASK"]);
 }
 
 #[test]

@@ -223,6 +223,7 @@ fn mtl_cases() -> Vec<Case> {
                     "a.mtl:3: \"Ns \" is no number and is not used",
                     "a.mtl:4: \"d x\" is no number and is not used",
                     "a.mtl:5: \"Ks -1 0 0\" is no colour and is not used; write Ks red green blue, each 0 or more",
+                    "a.mtl: Tr 1 would leave nothing of m to be seen; it is taken as solid (say d 0 to hide it)",
                 ],
             ),
         ),
@@ -295,7 +296,7 @@ fn toml_cases() -> Vec<Case> {
             "a key that is nearly right",
             described("[[material]]\nname = \"a\"\ndifuse = 1\n"),
             Error(
-                "DIR/scene.toml:3: unknown field `difuse`, expected one of `name`, `diffuse`, `specular`, `shininess`, `emission`, `opacity`, `index_of_refraction`, `illumination`, `mirror`, `diffuse_map`, `specular_map`, `emission_map`, `opacity_map`, `normal_map`, `bump_map`, `bump_scale`; did you mean `diffuse`?",
+                "DIR/scene.toml:3: unknown field `difuse`, expected one of `name`, `diffuse`, `specular`, `shininess`, `emission`, `opacity`, `blend`, `index_of_refraction`, `illumination`, `mirror`, `diffuse_map`, `specular_map`, `emission_map`, `opacity_map`, `normal_map`, `bump_map`, `bump_scale`; did you mean `diffuse`?",
             ),
         ),
         (

@@ -30,6 +30,7 @@ fn materials_reach_the_triangles_that_name_them_in_file_order() {
     assert_eq!((blue.opacity, blue.index_of_refraction, blue.illumination), (0.5, 1.5, 3));
     let red = scene.materials.iter().find(|material| material.name == "red").unwrap();
     assert_eq!(red.opacity, 0.75);
+    assert!(red.blend && blue.blend && !scene.materials[0].blend);
 }
 
 #[test]

@@ -353,7 +353,7 @@ impl Player {
             return Ok(0);
         }
         let (vertices, triangles) = check_room(vertices, triangle_room)?;
-        let made = Arrays::new(&self.context, vertices, triangles, has_colours)?;
+        let made = Arrays::new(&self.context, vertices, triangles, has_colours, arrays.has_opacities())?;
         for (((mesh_id, moving), range), mesh) in (0..).zip(&self.meshes).zip(&ranges).zip(&self.animation.scene.meshes) {
             if !matches!(moving.motion, Way::Keys { .. }) {
                 made.write_vertices(mesh, range.first)?;

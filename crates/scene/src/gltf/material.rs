@@ -50,6 +50,7 @@ pub(super) struct Made {
     pub(super) coordinates: Option<Coordinates>,
     /// Whether a map ends at its edges instead of being repeated.
     pub(super) clamped: bool,
+    pub(super) alpha: AlphaMode,
 }
 
 /// Makes the materials that meshes ask for, each once.
@@ -172,18 +173,18 @@ impl<'a> Materials<'a> {
                 AlphaMode::Opaque
             }
         };
-        let cutoff = match mode {
-            AlphaMode::Opaque => None,
-            AlphaMode::Mask => Some(source.alpha_cutoff.map_or(0.5, |cutoff| positive(cutoff.0))),
-            AlphaMode::Blend => Some(0.5),
-        };
-        if let Some(cutoff) = cutoff {
-            material.opacity_map = self.mask(base, alpha, cutoff);
-            if mode == AlphaMode::Blend && material.opacity_map.is_some() {
-                self.document.warn(format!("{place}: alphaMode BLEND is read as a mask: what is less than half opaque is not seen"));
+        match mode {
+            AlphaMode::Opaque => {}
+            AlphaMode::Mask => {
+                let cutoff = source.alpha_cutoff.map_or(0.5, |cutoff| positive(cutoff.0));
+                material.opacity_map = self.mask(base, alpha, cutoff);
+            }
+            AlphaMode::Blend => {
+                (material.blend, material.opacity) = (true, alpha);
+                material.opacity_map = base.and_then(|image| self.opacity(image));
             }
         }
-        Made { name: material.name.clone(), number: self.assets.material(material), coordinates, clamped }
+        Made { name: material.name.clone(), number: self.assets.material(material), coordinates, clamped, alpha: mode }
     }
 
     /// The slot, if its texture is there and looked up as those before it: meshes have one set of texture coordinates.
@@ -365,6 +366,21 @@ impl<'a> Materials<'a> {
         });
         let texels = texels.collect();
         let picture = Picture { name: format!("{} (mask)", picture.name), width: picture.width, height: picture.height, texels };
+        self.add(key, picture, false)
+    }
+
+    /// The alpha of an image; `None` where all is solid.
+    fn opacity(&mut self, image: usize) -> Option<u32> {
+        let key = format!("opacity {image}");
+        if let Some(&known) = self.textures.get(&key) {
+            return known;
+        }
+        let mut picture = self.picture(image)?;
+        if picture.texels.iter().all(|texel| texel[3] == 255) {
+            return None;
+        }
+        picture.texels.iter_mut().for_each(|texel| *texel = [texel[3]; 4]);
+        picture.name.push_str(" (opacity)");
         self.add(key, picture, false)
     }
 

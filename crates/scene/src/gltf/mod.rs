@@ -224,13 +224,13 @@ impl Builder<'_> {
         let weights: Vec<f64> = rig.weights(number, 0.0).collect();
         let matrices: Vec<affine::Affine> = rig.matrices(number, 0.0).collect();
         let (positions, normals, mirrored) = shape::deformed(&shape, &weights, &matrices);
-        let Shape { positions: base, normals: base_normals, uvs, colours, mut indices, targets, influences, each } = shape;
+        let Shape { positions: base, normals: base_normals, uvs, colours, opacities, mut indices, targets, influences, each } = shape;
         if mirrored {
             indices.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
         let uvs = if uvs.is_empty() { vec![[0.0; 2]; positions.len()] } else { uvs };
         let materials = vec![material; indices.len()];
-        self.meshes.push(Mesh { name, positions, normals, uvs, colours, indices, materials });
+        self.meshes.push(Mesh { name, positions, normals, uvs, colours, opacities, indices, materials });
         self.deformed.push(rig.moves(number).then(|| {
             Box::new(Deformed {
                 positions: base,

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use gltf::json;
+use gltf::json::material::AlphaMode;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 
@@ -21,6 +22,8 @@ pub(super) struct Shape {
     pub(super) uvs: Vec<[f32; 2]>,
     /// Empty where there are none.
     pub(super) colours: Vec<[f32; 3]>,
+    /// Empty where there are none, or the material does not blend.
+    pub(super) opacities: Vec<f32>,
     pub(super) indices: Vec<[u32; 3]>,
     pub(super) targets: Vec<MorphTarget>,
     /// `each` a vertex; empty where nothing binds it to joints.
@@ -99,10 +102,19 @@ pub(super) fn read(document: &Document, primitive: &Primitive, material: &Made, 
             document.warn(format!("{place}: the textures of {} are repeated; other wrapping is not supported", material.name));
         }
     }
+    let mut opacities = Vec::new();
     let colours = match attribute(Semantic::Colors(0)) {
-        // The fourth number is opacity, which is not told from vertex to vertex.
         Some(accessor) if document.width(accessor) == Some(4) => {
-            document.floats::<4>(accessor)?.into_iter().map(|[red, green, blue, _]| [red, green, blue]).collect()
+            let colours = document.floats::<4>(accessor)?;
+            let opacity = |value: f32| if value.is_finite() { value.clamp(0.0, 1.0) } else { 1.0 };
+            if colours.iter().any(|[.., alpha]| opacity(*alpha) < 1.0) {
+                match material.alpha {
+                    AlphaMode::Opaque => {}
+                    AlphaMode::Mask => document.warn(format!("{place}: the alpha of its vertices' colours is not cut by alphaMode MASK")),
+                    AlphaMode::Blend => opacities = colours.iter().map(|[.., alpha]| opacity(*alpha)).collect(),
+                }
+            }
+            colours.into_iter().map(|[red, green, blue, _]| [red, green, blue]).collect()
         }
         Some(accessor) => document.floats::<3>(accessor)?,
         None => Vec::new(),
@@ -124,7 +136,8 @@ pub(super) fn read(document: &Document, primitive: &Primitive, material: &Made, 
     }
 
     let (influences, each) = read_influences(document, primitive, count, &fail)?;
-    let raw = Shape { positions, normals: normals.unwrap_or_default(), uvs, colours, indices: triangles, targets, influences, each };
+    let raw =
+        Shape { positions, normals: normals.unwrap_or_default(), uvs, colours, opacities, indices: triangles, targets, influences, each };
     Ok(Some(if raw.normals.is_empty() { flat(document, &raw)? } else { smooth(document, raw)? }))
 }
 
@@ -262,6 +275,7 @@ fn gathered(document: &Document, raw: &Shape, order: &[u32]) -> Result<Shape> {
         normals: pick(&raw.normals, order, 1),
         uvs: pick(&raw.uvs, order, 1),
         colours: pick(&raw.colours, order, 1),
+        opacities: pick(&raw.opacities, order, 1),
         indices: Vec::new(),
         targets: raw
             .targets
@@ -285,7 +299,7 @@ impl Shape {
     /// Bytes of a vertex with all that belongs to it.
     pub(super) fn bytes_each(&self) -> usize {
         let influences = self.each as usize * size_of::<Influence>();
-        size_of::<[f32; 11]>() + influences + self.targets.len().saturating_mul(size_of::<[f32; 6]>())
+        size_of::<[f32; 12]>() + influences + self.targets.len().saturating_mul(size_of::<[f32; 6]>())
     }
 }
 
