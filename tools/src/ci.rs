@@ -138,7 +138,7 @@ fn spirv_val(root: &Root) -> Result<Outcome> {
         return Ok(Outcome::Skipped("spirv-val is not installed: apt-get install spirv-tools".to_owned()));
     }
     let mut count = 0;
-    let mut owners = vec![root.join("examples")];
+    let mut owners = vec![root.join("examples"), root.join("tools/bench")];
     for owner in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
         owners.push(owner?.path());
     }

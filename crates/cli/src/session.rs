@@ -30,7 +30,7 @@ impl Session {
             device: device.selector.clone(),
             validation: device.validate,
             name: "gridwalk",
-            memory_limit: None,
+            ..ContextDesc::default()
         })?;
         let info = context.device_info();
         report::warn_of_cpu(info);

@@ -2,7 +2,7 @@
 
 use crate::{
     Error, Result,
-    device::{Candidate, DeviceInfo, DeviceKind, DeviceSelector, Instance},
+    device::{Candidate, DeviceInfo, DeviceKind, DeviceSelector, Instance, RAY_QUERY_EXTENSIONS},
 };
 use ash::{ext, vk};
 use bytemuck::{AnyBitPattern, NoUninit};
@@ -34,6 +34,9 @@ pub struct ContextDesc<'a> {
     pub name: &'a str,
     /// Bytes of device memory that may be used at most, below what the device has; for tests and for sharing a device.
     pub memory_limit: Option<u64>,
+    /// Enables the device's own acceleration structures and ray queries where it has them ([`Context::has_ray_query`]): buffers may then hold
+    /// them, and what they are built from. Nothing here uses them; they are for the caller's own commands.
+    pub ray_query: bool,
 }
 
 /// Who reads and writes a buffer.
@@ -79,6 +82,7 @@ struct Shared {
     debug: Option<ext::debug_utils::Device>,
     candidate: Candidate,
     heap_budget: Budget,
+    has_ray_query: bool,
     /// Bytes of all living buffers.
     allocated: AtomicU64,
     /// Most bytes that lived at once.
@@ -144,15 +148,22 @@ impl Context {
             Some(family) => vec![queue(candidate.queue_family, 1), queue(family, 1)],
             None => vec![queue(candidate.queue_family, 1)],
         };
-        let extensions: Vec<_> = candidate.extensions.iter().map(|name| name.as_ptr()).collect();
+        let has_ray_query = desc.ray_query && candidate.has_ray_query;
+        let more = if has_ray_query { &RAY_QUERY_EXTENSIONS[..] } else { &[] };
+        let extensions: Vec<_> = candidate.extensions.iter().chain(more).map(|name| name.as_ptr()).collect();
         let mut features = gridwalk::requirements::features();
         // Every device of Vulkan 1.3 has timeline semaphores.
         features.vulkan_12 = features.vulkan_12.timeline_semaphore(true).host_query_reset(candidate.has_host_query_reset);
-        let info = vk::DeviceCreateInfo::default()
+        let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
+        let mut ray_query = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
+        let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions)
             .push_next(&mut features.vulkan_12)
             .push_next(&mut features.vulkan_13);
+        if has_ray_query {
+            info = info.push_next(&mut structures).push_next(&mut ray_query);
+        }
         // SAFETY: the physical device comes from this instance; features and extensions were found on it; every pointer outlives the call.
         let device = unsafe { instance.raw.create_device(candidate.handle, &info, None) }.map_err(Error::vulkan("vkCreateDevice"))?;
         let debug = instance.debug.as_ref().map(|_| ext::debug_utils::Device::new(&instance.raw, &device));
@@ -175,6 +186,7 @@ impl Context {
             device,
             debug,
             heap_budget: Budget { heap: u32::try_from(heap).unwrap_or(0), limit: desc.memory_limit },
+            has_ray_query,
             allocated: AtomicU64::new(0),
             peak: AtomicU64::new(0),
             made: AtomicU64::new(0),
@@ -223,6 +235,11 @@ impl Context {
     /// A pipeline cache for all pipelines of the context.
     pub fn pipeline_cache(&self) -> vk::PipelineCache {
         self.shared.pipeline_cache
+    }
+
+    /// Whether acceleration structures and ray queries of the device's own were asked for and are enabled.
+    pub fn has_ray_query(&self) -> bool {
+        self.shared.has_ray_query
     }
 
     /// Whether the queue can take timestamps.
@@ -288,11 +305,15 @@ impl Context {
         if size > available {
             return Err(out_of_memory());
         }
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+        let mut usage = vk::BufferUsageFlags::STORAGE_BUFFER
             | vk::BufferUsageFlags::TRANSFER_SRC
             | vk::BufferUsageFlags::TRANSFER_DST
             | vk::BufferUsageFlags::INDIRECT_BUFFER
             | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        if self.shared.has_ray_query {
+            usage |= vk::BufferUsageFlags::ACCELERATION_STRUCTURE_STORAGE_KHR
+                | vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
+        }
         let sharing = if families.is_empty() { vk::SharingMode::EXCLUSIVE } else { vk::SharingMode::CONCURRENT };
         let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(sharing).queue_family_indices(families);
         let device = &self.shared.device;

@@ -212,7 +212,13 @@ pub(crate) struct Candidate {
     /// Extensions to enable: those that must be when they are there, and the memory budget.
     pub(crate) extensions: Vec<&'static CStr>,
     pub(crate) has_budget: bool,
+    /// Whether it offers acceleration structures and ray queries of its own.
+    pub(crate) has_ray_query: bool,
 }
+
+/// What acceleration structures and ray queries of a device need to be enabled.
+pub(crate) const RAY_QUERY_EXTENSIONS: [&CStr; 3] =
+    [khr::deferred_host_operations::NAME, khr::acceleration_structure::NAME, khr::ray_query::NAME];
 
 /// The Vulkan instance; destroyed with it are the messenger and, last, the loader.
 pub(crate) struct Instance {
@@ -367,6 +373,15 @@ impl Instance {
             .map_err(Error::vulkan("vkEnumerateDeviceExtensionProperties"))?;
         let has = |name: &CStr| offered.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name));
         let has_budget = has(ext::memory_budget::NAME);
+        let mut has_ray_query = RAY_QUERY_EXTENSIONS.into_iter().all(has);
+        if has_ray_query {
+            let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default();
+            let mut queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default();
+            let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut structures).push_next(&mut queries);
+            // SAFETY: the handle comes from this instance; the device has the extensions, so it knows both structs.
+            unsafe { self.raw.get_physical_device_features2(handle, &mut features) };
+            has_ray_query = structures.acceleration_structure == vk::TRUE && queries.ray_query == vk::TRUE;
+        }
         let mut extensions = Vec::new();
         if has_budget {
             extensions.push(ext::memory_budget::NAME);
@@ -419,6 +434,7 @@ impl Instance {
             has_host_query_reset: core.api_version >= vk::API_VERSION_1_3 && vulkan12_features.host_query_reset == vk::TRUE,
             extensions,
             has_budget,
+            has_ray_query,
         })
     }
 

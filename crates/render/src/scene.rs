@@ -392,8 +392,8 @@ impl GpuScene {
         self.stale = Stale::default();
     }
 
-    /// What a grid is built over.
-    pub(crate) fn geometry(&self) -> Geometry {
+    /// What a grid is built over: the triangles of all meshes, in device memory.
+    pub fn geometry(&self) -> Geometry {
         Geometry {
             positions: self.arrays.positions.region(),
             vertex_count: self.arrays.vertices,

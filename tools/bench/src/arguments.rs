@@ -139,9 +139,10 @@ pub struct Common {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
 
-    /// Do not look for Embree
-    #[arg(long)]
-    pub no_embree: bool,
+    /// Measure these alone besides: Embree, crate obvhs, the driver's own acceleration structures and ray queries; `none` is none [default: all
+    /// that are there]
+    #[arg(long, value_delimiter = ',', value_name = "WHO")]
+    pub rivals: Vec<Who>,
 
     /// Embree's library, instead of the usual names
     #[arg(long, value_name = "FILE")]
@@ -177,6 +178,19 @@ pub enum Part {
     Object,
 }
 
+/// Who is measured besides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Who {
+    /// Embree, where it is installed.
+    Embree,
+    /// The crate, on the host.
+    Obvhs,
+    /// Of the same device, where it has them.
+    Driver,
+    /// Nobody.
+    None,
+}
+
 /// The overlap test of the build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Overlap {
@@ -193,6 +207,14 @@ pub enum Quality {
     Medium,
     /// With spatial splits.
     High,
+}
+
+impl Common {
+    /// Whether a rival is to be measured, and whether it was asked for by name.
+    pub fn wants(&self, who: Who) -> (bool, bool) {
+        let is_named = self.rivals.contains(&who);
+        (is_named || self.rivals.is_empty(), is_named)
+    }
 }
 
 impl Arguments {

@@ -70,7 +70,7 @@ fn frame(
     let extent = (0..3).map(|axis| report.box_max[axis] - report.box_min[axis]).fold(0.0, f32::max);
     let scene = player.scene();
     let surface = Surface { positions: scene.read_positions()?, indices: scene.read_indices()?, offset: extent * 1e-4 };
-    let contenders = rivals.contenders(&surface.positions, &surface.indices)?;
+    let contenders = rivals.contenders(scene.geometry(), &surface.positions, &surface.indices)?;
 
     let camera = Traced::new(player.grid(), camera_rays(camera, arguments.common.size))?;
     let reflection = Traced::new(player.grid(), surface.reflections(&camera))?;

@@ -3,24 +3,32 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics"))]
 
 mod arguments;
+mod bvh;
 mod compare;
 mod contender;
+#[allow(unsafe_code, reason = "calls Vulkan's own ray tracing")]
+mod driver;
 mod dynamic;
 mod dynamic_report;
 #[allow(unsafe_code, reason = "calls a C library")]
 mod embree;
 mod growth;
 mod host;
+#[allow(dead_code, reason = "generated: one kernel is taken by name")]
+mod kernels;
 mod measure;
 mod moving;
 mod ours;
 mod plot;
+mod push;
 mod rays;
 #[allow(unsafe_code, reason = "records commands")]
 mod record;
 mod report;
 mod rivals;
 mod scenes;
+#[allow(unsafe_code, reason = "records commands")]
+mod stopwatch;
 mod surface;
 mod table;
 mod vector;
@@ -34,7 +42,7 @@ use clap::Parser;
 use gridwalk_render::{Context, ContextDesc, GridBuilder};
 use serde::{Deserialize, Serialize};
 
-use crate::arguments::{Arguments, Common, Dynamic, Mode, Quality};
+use crate::arguments::{Arguments, Common, Dynamic, Mode, Quality, Who};
 use crate::report::{Report, SCHEMA, Setup};
 use crate::rivals::Rivals;
 
@@ -131,8 +139,9 @@ fn threads(common: &Common) -> u32 {
 /// The device, the rivals, and what the report says of both.
 fn open(common: &Common, quality: Quality, runs: u32) -> Result<(Context, Rivals, Setup)> {
     let Ok(device) = common.device.parse();
-    let context = Context::new(&ContextDesc { device, name: "gridwalk-bench", ..ContextDesc::default() })?;
-    let rivals = Rivals::open(common, threads(common), quality)?;
+    let context =
+        Context::new(&ContextDesc { device, name: "gridwalk-bench", ray_query: common.wants(Who::Driver).0, ..ContextDesc::default() })?;
+    let rivals = Rivals::open(common, &context, threads(common), quality)?;
     let info = context.device_info();
     let setup = Setup {
         schema: SCHEMA,
@@ -196,7 +205,7 @@ mod tests {
     #[test]
     fn a_small_run_makes_a_table_and_json() {
         for (words, has_rival) in
-            [(&["bumpy:500", "soup:300", "stadium:400", "--overlap", "exact"][..], None), (&["bumpy:300", "--no-embree"], Some(false))]
+            [(&["bumpy:500", "soup:300", "stadium:400", "--overlap", "exact"][..], None), (&["bumpy:300", "--rivals", "none"], Some(false))]
         {
             let report = run(&arguments(words)).unwrap();
             let rivals = report.setup.rivals.len();
@@ -241,7 +250,7 @@ mod tests {
 
     #[test]
     fn parts_that_are_not_asked_for_are_not_measured() {
-        let report = run(&arguments(&["sphere:200", "--no-embree", "--only", "any"])).unwrap();
+        let report = run(&arguments(&["sphere:200", "--rivals", "none", "--only", "any"])).unwrap();
         assert_eq!(report.scenes[0].figures().map(|(name, _)| name).collect::<Vec<_>>(), ["any"]);
     }
 

@@ -83,7 +83,7 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
     let gpu = GpuScene::upload(builder.context(), &loaded.scene)?;
     let settings = settings(&arguments.common);
     let grid = builder.build(&gpu, &settings)?;
-    let mut field = Field { ours: Ours::still(grid, &gpu), rivals: rivals.contenders(&mesh.positions, &mesh.indices)? };
+    let mut field = Field { ours: Ours::still(grid, &gpu), rivals: rivals.contenders(gpu.geometry(), &mesh.positions, &mesh.indices)? };
 
     let runs = arguments.runs;
     let mut sets = Sets::new(arguments, loaded, mesh);

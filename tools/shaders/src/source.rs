@@ -22,7 +22,7 @@ pub struct Owner {
 }
 
 /// All crates that own kernels.
-pub const OWNERS: [Owner; 3] = [
+pub const OWNERS: [Owner; 4] = [
     Owner {
         name: "gridwalk",
         folder: "crates/gridwalk",
@@ -34,6 +34,13 @@ pub const OWNERS: [Owner; 3] = [
         name: "render",
         folder: "crates/render",
         sources: &[("map", "glsl/render/map"), ("cooperative", "glsl/render/cooperative")],
+        kernel_types: Some("gridwalk::kernel"),
+        public_include: None,
+    },
+    Owner {
+        name: "bench",
+        folder: "tools/bench",
+        sources: &[("map", "tools/bench/shaders")],
         kernel_types: Some("gridwalk::kernel"),
         public_include: None,
     },
