@@ -45,6 +45,7 @@ missing_packages() {
             test)
                 has_validation || echo vulkan-validationlayers
                 command -v spirv-val >/dev/null 2>&1 || echo spirv-tools
+                command -v glslangValidator >/dev/null 2>&1 || echo glslang-tools
                 # For the C program that uses gridwalk.h.
                 [ -e /usr/include/vulkan/vulkan_core.h ] || [ -e /usr/local/include/vulkan/vulkan_core.h ] || echo libvulkan-dev
                 ;;

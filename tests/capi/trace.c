@@ -699,6 +699,7 @@ int main(int argc, char **argv) {
         fail("header and library are of one version");
     if (gridwalk_last_error()[0] || gridwalk_last_vk_result() != VK_SUCCESS) fail("nothing has failed so far");
     if (!strstr(gridwalk_glsl(), "gridwalk_closest_hit")) fail("the include is a text");
+    if (!strstr(gridwalk_slang(), "gridwalk_closest_hit")) fail("the include in Slang is a text");
     make_instance();
     make_device();
 

@@ -378,6 +378,31 @@ impl Gpu {
         error.unwrap_or_else(|| panic!("not refused: {info:?}"))
     }
 
+    /// Runs a shader that is none of the library's, as so many workgroups.
+    pub fn run_module(&self, words: &[u32], push: &[u8], groups: u32) {
+        let device = self.context.device();
+        // SAFETY: the module is valid, the caller's push constants hold addresses of memory that it may access and that outlives the
+        // submission, which is waited for before anything is destroyed.
+        unsafe {
+            let module = device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(words), None).unwrap();
+            let range = [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(push.len() as u32)];
+            let layout =
+                device.create_pipeline_layout(&vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&range), None).unwrap();
+            let stage = vk::PipelineShaderStageCreateInfo::default().stage(vk::ShaderStageFlags::COMPUTE).module(module).name(c"main");
+            let info = [vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout)];
+            let pipeline = device.create_compute_pipelines(vk::PipelineCache::null(), &info, None).unwrap()[0];
+            self.submit(|cmd| {
+                device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline);
+                device.cmd_push_constants(cmd, layout, vk::ShaderStageFlags::COMPUTE, 0, push);
+                device.cmd_dispatch(cmd, groups, 1, 1);
+            });
+            device.destroy_pipeline(pipeline, None);
+            device.destroy_pipeline_layout(layout, None);
+            device.destroy_shader_module(module, None);
+        }
+        self.check_validation();
+    }
+
     /// Why a trace through the grid at an address is refused.
     pub fn refused_trace(&self, grid: vk::DeviceAddress, info: &TraceInfo) -> gridwalk::Error {
         let mut error = None;

@@ -13,6 +13,7 @@ use crate::api;
 use crate::drivers::{self, Environment};
 use crate::process::{self, Root};
 use crate::shaders;
+use crate::slang;
 
 /// What `cargo tool ci` may be told.
 #[derive(Args)]
@@ -41,13 +42,14 @@ enum Outcome {
 }
 
 /// The full test suite comes last, so that its closing line is the last thing before the summary.
-const STEPS: [Step; 13] = [
+const STEPS: [Step; 14] = [
     Step { name: "format", about: "rustfmt has nothing to change", run: format },
     Step { name: "clippy", about: "no warning in any crate, test or tool", run: clippy },
     Step { name: "doc", about: "documentation builds without a warning", run: doc },
     Step { name: "shaders", about: "what is made from GLSL is as committed, compiled anew", run: check_shaders },
     Step { name: "clippy-shaders", about: "no warning in the shader tool", run: clippy_shaders },
     Step { name: "spirv-val", about: "every committed SPIR-V module is valid", run: spirv_val },
+    Step { name: "slang", about: "the include in Slang compiles, to what is committed", run: check_slang },
     Step { name: "api", about: "the library's public interface is as kept in docs/api", run: check_api },
     Step { name: "package", about: "each crate packs", run: package },
     Step { name: "cross", about: "the program and the libraries compile for Windows and macOS", run: cross },
@@ -138,7 +140,7 @@ fn spirv_val(root: &Root) -> Result<Outcome> {
         return Ok(Outcome::Skipped("spirv-val is not installed: apt-get install spirv-tools".to_owned()));
     }
     let mut count = 0;
-    let mut owners = vec![root.join("examples"), root.join("tools/bench")];
+    let mut owners = vec![root.join("examples"), root.join("tests"), root.join("tools/bench")];
     for owner in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
         owners.push(owner?.path());
     }
@@ -156,6 +158,13 @@ fn spirv_val(root: &Root) -> Result<Outcome> {
     }
     eprintln!("{count} modules are valid");
     Ok(Outcome::Passed)
+}
+
+fn check_slang(root: &Root) -> Result<Outcome> {
+    match slang::compiler() {
+        Ok(_) => slang::check(root).map(|()| Outcome::Passed),
+        Err(error) => Ok(Outcome::Skipped(format!("a Slang compiler cannot be had here: {error:#}"))),
+    }
 }
 
 fn check_api(root: &Root) -> Result<Outcome> {

@@ -9,6 +9,7 @@ mod drivers;
 mod process;
 mod scenes;
 mod shaders;
+mod slang;
 
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
@@ -35,6 +36,8 @@ enum Tool {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         options: Vec<String>,
     },
+    /// Compile the tests' shaders in Slang anew; `shaders` does so too where the compiler has been brought (needs Python's pip)
+    Slang,
     /// Everything that CI does, in its order
     Ci(ci::Arguments),
     /// Bless the pictures that the image tests make now, and list what changed
@@ -103,7 +106,8 @@ fn main() -> ExitCode {
 fn run(tool: Tool) -> Result<ExitCode> {
     let root = Root::find()?;
     match tool {
-        Tool::Shaders { options } => return process::pass(&mut shaders::command(&root, &options)?),
+        Tool::Shaders { options } => return shaders::run(&root, &options),
+        Tool::Slang => slang::write(&root)?,
         Tool::Ci(arguments) => return ci::run(&root, &arguments),
         Tool::Bless { filter } => return bless::run(&root, filter.as_deref()),
         Tool::Api => api::write(&root)?,

@@ -1,11 +1,12 @@
 //! `cargo tool shaders`: runs the shader tool, which has its own target folder.
 
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, ExitCode};
 
 use anyhow::{Result, bail};
 
 use crate::process::{self, Root};
+use crate::slang;
 
 /// Where the shader tool is built: shaderc takes minutes, so that its build outlives `cargo clean` of nothing else and is cached alone.
 pub fn target(root: &Root) -> PathBuf {
@@ -32,4 +33,13 @@ pub fn command(root: &Root, options: &[String]) -> Result<Command> {
     let mut command = cargo(root, "run");
     command.args(["--quiet", "--", "--root"]).arg(&**root).args(options);
     Ok(command)
+}
+
+/// Runs the shader tool; and where the include was written, and a Slang compiler is here, compiles what includes it in Slang.
+pub fn run(root: &Root, options: &[String]) -> Result<ExitCode> {
+    let code = process::pass(&mut command(root, options)?)?;
+    if code == ExitCode::SUCCESS && options.is_empty() && slang::is_here() {
+        slang::write(root)?;
+    }
+    Ok(code)
 }

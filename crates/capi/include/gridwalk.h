@@ -773,6 +773,11 @@ VkResult gridwalk_last_vk_result(void);
 const char *gridwalk_glsl(void);
 
 /**
+ * The same in Slang, to be compiled with `-fp-mode precise`.
+ */
+const char *gridwalk_slang(void);
+
+/**
  * Looks at a physical device before a device is made of it, and enables the features that the library needs.
  *
  * `features` is null or the first structure of a chain by `pNext`, which you then pass to `vkCreateDevice`. It holds a

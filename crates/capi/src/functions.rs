@@ -9,8 +9,8 @@ use gridwalk::ash::vk::{
     Instance as VkInstance, PhysicalDevice as VkPhysicalDevice, PipelineStageFlags2 as VkPipelineStageFlags2, Result as VkResult,
 };
 use gridwalk::{
-    Access, BuildInfo, BuildOptions, Capacity, Cull, DeviceDesc, GRIDWALK_GLSL, Geometry, GeometryRecord, Input, Overlap, RayCount,
-    Records, Region, RegionSize, Timestamps, TraceInfo, Tracer, cmd_barrier, requirements,
+    Access, BuildInfo, BuildOptions, Capacity, Cull, DeviceDesc, GRIDWALK_GLSL, GRIDWALK_SLANG, Geometry, GeometryRecord, Input, Overlap,
+    RayCount, Records, Region, RegionSize, Timestamps, TraceInfo, Tracer, cmd_barrier, requirements,
 };
 
 use crate::error::{self, Failure, Result, Text, guard};
@@ -42,22 +42,31 @@ pub extern "C" fn gridwalk_last_vk_result() -> VkResult {
     error::last_vk_result()
 }
 
-/// The include's text, and the zero byte that C wants.
-static GLSL: [u8; GRIDWALK_GLSL.len() + 1] = {
-    let mut text = [0; GRIDWALK_GLSL.len() + 1];
+/// A text, and the zero byte that C wants.
+const fn ended<const SIZE: usize>(text: &str) -> [u8; SIZE] {
+    let mut bytes = [0; SIZE];
     let mut i = 0;
-    while i < GRIDWALK_GLSL.len() {
-        text[i] = GRIDWALK_GLSL.as_bytes()[i];
+    while i < text.len() {
+        bytes[i] = text.as_bytes()[i];
         i += 1;
     }
-    text
-};
+    bytes
+}
+
+static GLSL: [u8; GRIDWALK_GLSL.len() + 1] = ended(GRIDWALK_GLSL);
+static SLANG: [u8; GRIDWALK_SLANG.len() + 1] = ended(GRIDWALK_SLANG);
 
 /// The text of the GLSL include, which traces from your own shader: pass it the address of a grid region. Its head documents it. The
 /// text is constant, and good as long as the library is loaded.
 #[unsafe(no_mangle)]
 pub extern "C" fn gridwalk_glsl() -> *const c_char {
     GLSL.as_ptr().cast()
+}
+
+/// The same in Slang, to be compiled with `-fp-mode precise`.
+#[unsafe(no_mangle)]
+pub extern "C" fn gridwalk_slang() -> *const c_char {
+    SLANG.as_ptr().cast()
 }
 
 /// Looks at a physical device before a device is made of it, and enables the features that the library needs.

@@ -122,12 +122,12 @@ struct GridwalkGridHeader {
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridwalkGridHeader header; };
 
-vec3 gridwalk_to_frame(GridwalkGridHeader grid, vec3 point) { return (point - grid.middle) * grid.scale; }
+precise vec3 gridwalk_to_frame(GridwalkGridHeader grid, vec3 point) { return (point - grid.middle) * grid.scale; }
 
 // Lower boundary of cell i, upper boundary of cell i - 1. The one function that both the build and the walk use: the walk is watertight
 // only if they agree bit for bit.
-vec3 gridwalk_boundary(vec3 box_min, vec3 cell_size, vec3 i) {
-    vec3 offset = i * cell_size;
+precise vec3 gridwalk_boundary(vec3 box_min, vec3 cell_size, vec3 i) {
+    precise vec3 offset = i * cell_size;
     return box_min + offset;
 }
 
@@ -157,45 +157,45 @@ const float GRIDWALK_SLAB_TOLERANCE = 9.5367431640625e-07; // 2^-20, above the r
 const float GRIDWALK_LEAST_NORMAL = 1.1754943508222875e-38; // 2^-126
 
 // 2^e for -126 <= e <= 127.
-float gridwalk_power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
+precise float gridwalk_power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
 
 // floor(log2(x)) for normal x > 0, clamped so that the power of two and its inverse are normal numbers.
 int gridwalk_clamped_exponent(float x) { return clamp(int((floatBitsToUint(x) >> 23) & 255u) - 127, -126, 126); }
 
 bool gridwalk_is_finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
 
-vec3 gridwalk_permute(GridwalkMovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
+precise vec3 gridwalk_permute(GridwalkMovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
 
-GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
-    GridwalkMovedRay moved;
-    vec3 magnitude = abs(ray.direction);
-    float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
+precise GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
+    precise GridwalkMovedRay moved;
+    precise vec3 magnitude = abs(ray.direction);
+    precise float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
     moved.valid = gridwalk_is_finite(ray.origin) && gridwalk_is_finite(ray.direction) && largest > 0.0 && !isnan(ray.t_min) && !isnan(ray.t_max);
     if (!moved.valid) {
         return moved;
     }
     int exponent = gridwalk_clamped_exponent(largest);
-    float shrink = gridwalk_power_of_two(-exponent);
-    float grow = gridwalk_power_of_two(exponent);
+    precise float shrink = gridwalk_power_of_two(-exponent);
+    precise float grow = gridwalk_power_of_two(exponent);
     bvec3 zero = lessThan(magnitude, vec3(largest * GRIDWALK_NEGLIGIBLE_COMPONENT));
-    vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
+    precise vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
                           zero.z ? 0.0 : ray.direction.z * shrink);
-    vec3 origin = gridwalk_to_frame(grid, ray.origin);
+    precise vec3 origin = gridwalk_to_frame(grid, ray.origin);
     moved.t_of_s = vec2(grid.inverse_scale, shrink);
-    float first = ray.t_min * grow * grid.scale;
-    float last = ray.t_max * grow * grid.scale;
+    precise float first = ray.t_min * grow * grid.scale;
+    precise float last = ray.t_max * grow * grid.scale;
 
     // The interval of the box, and the tests of the axes along which the ray does not move.
-    float entry = -GRIDWALK_INFINITY;
-    float leave = GRIDWALK_INFINITY;
+    precise float entry = -GRIDWALK_INFINITY;
+    precise float leave = GRIDWALK_INFINITY;
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0.0) {
             moved.valid = moved.valid && origin[axis] >= grid.box_min[axis] && origin[axis] <= grid.box_max[axis];
         } else {
-            float inverse = 1.0 / direction[axis];
+            precise float inverse = 1.0 / direction[axis];
             bool up = direction[axis] > 0.0;
-            float near = ((up ? grid.box_min[axis] : grid.box_max[axis]) - origin[axis]) * inverse;
-            float far = ((up ? grid.box_max[axis] : grid.box_min[axis]) - origin[axis]) * inverse;
+            precise float near = ((up ? grid.box_min[axis] : grid.box_max[axis]) - origin[axis]) * inverse;
+            precise float far = ((up ? grid.box_max[axis] : grid.box_min[axis]) - origin[axis]) * inverse;
             entry = max(entry, near);
             leave = min(leave, far);
         }
@@ -206,7 +206,7 @@ GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
     moved.start = max(entry, first);
     // No >, which a NaN would pass.
     moved.valid = moved.valid && moved.start <= leave && moved.start <= last;
-    vec3 travelled = moved.start * direction;
+    precise vec3 travelled = moved.start * direction;
     moved.origin = origin + travelled;
     // A ray that starts 2^127 of the grid's units away is lost.
     moved.valid = moved.valid && gridwalk_is_finite(moved.origin);
@@ -217,58 +217,58 @@ GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
     moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
     moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
     moved.direction = direction;
-    vec3 permuted = gridwalk_permute(moved, direction);
-    float inverse_z = 1.0 / permuted.z;
+    precise vec3 permuted = gridwalk_permute(moved, direction);
+    precise float inverse_z = 1.0 / permuted.z;
     moved.shear = vec3(permuted.x * inverse_z, permuted.y * inverse_z, inverse_z);
     return moved;
 }
 
 // t of a hit at s, inside of the ray's interval in spite of rounding.
-float gridwalk_hit_distance(GridwalkMovedRay moved, Ray ray, float s) {
-    float t = (moved.start + s) * moved.t_of_s.x * moved.t_of_s.y;
+precise float gridwalk_hit_distance(GridwalkMovedRay moved, Ray ray, float s) {
+    precise float t = (moved.start + s) * moved.t_of_s.x * moved.t_of_s.y;
     return min(max(t, ray.t_min), ray.t_max);
 }
 
 // s of a t, as hit_distance has it.
-float gridwalk_distance_to_s(GridwalkMovedRay moved, float t) {
+precise float gridwalk_distance_to_s(GridwalkMovedRay moved, float t) {
     return t / moved.t_of_s.y / moved.t_of_s.x - moved.start;
 }
 
 // Whether the ray's line meets the triangle; s, u and v are set if so. Edge functions of a shared edge differ in sign alone, because
 // each is a difference of two products and nothing is contracted; zero counts as inside, so no ray passes between two neighbours.
 // A triangle seen exactly edge-on is not hit. Both windings are.
-bool gridwalk_intersect_triangle(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, out float u, out float v) {
-    vec3 a = gridwalk_permute(ray, v0 - ray.origin);
-    vec3 b = gridwalk_permute(ray, v1 - ray.origin);
-    vec3 c = gridwalk_permute(ray, v2 - ray.origin);
-    float ax = a.x - ray.shear.x * a.z;
-    float ay = a.y - ray.shear.y * a.z;
-    float bx = b.x - ray.shear.x * b.z;
-    float by = b.y - ray.shear.y * b.z;
-    float cx = c.x - ray.shear.x * c.z;
-    float cy = c.y - ray.shear.y * c.z;
-    float edge_u = cx * by - cy * bx;
-    float edge_v = ax * cy - ay * cx;
-    float edge_w = bx * ay - by * ax;
+bool gridwalk_intersect_triangle(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2, precise out float s, precise out float u, precise out float v) {
+    precise vec3 a = gridwalk_permute(ray, v0 - ray.origin);
+    precise vec3 b = gridwalk_permute(ray, v1 - ray.origin);
+    precise vec3 c = gridwalk_permute(ray, v2 - ray.origin);
+    precise float ax = a.x - ray.shear.x * a.z;
+    precise float ay = a.y - ray.shear.y * a.z;
+    precise float bx = b.x - ray.shear.x * b.z;
+    precise float by = b.y - ray.shear.y * b.z;
+    precise float cx = c.x - ray.shear.x * c.z;
+    precise float cy = c.y - ray.shear.y * c.z;
+    precise float edge_u = cx * by - cy * bx;
+    precise float edge_v = ax * cy - ay * cx;
+    precise float edge_w = bx * ay - by * ax;
     bool negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
     bool positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
-    float determinant = edge_u + edge_v + edge_w;
+    precise float determinant = edge_u + edge_v + edge_w;
     // The inverse of a denormal may be infinite.
     if ((negative && positive) || abs(determinant) < GRIDWALK_LEAST_NORMAL) {
         return false;
     }
     // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
     // for planes along the axes, and never beyond the triangle's vertices.
-    vec3 e1 = b - a;
-    vec3 e2 = c - a;
-    vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-    float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
+    precise vec3 e1 = b - a;
+    precise vec3 e2 = c - a;
+    precise vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+    precise float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
     if (abs(facing) < GRIDWALK_LEAST_NORMAL) {
         return false;
     }
-    float along = (normal.x * a.x + normal.y * a.y + normal.z * a.z) / facing;
+    precise float along = (normal.x * a.x + normal.y * a.y + normal.z * a.z) / facing;
     s = min(max(along, min(a.z, min(b.z, c.z))), max(a.z, max(b.z, c.z))) * ray.shear.z;
-    float inverse = 1.0 / determinant;
+    precise float inverse = 1.0 / determinant;
     u = edge_v * inverse;
     v = edge_w * inverse;
     return true;
@@ -306,7 +306,7 @@ ivec3 gridwalk_select(bvec3 which, ivec3 yes, ivec3 no) {
 }
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
-void gridwalk_walk_enter(inout GridwalkWalk walk, GridwalkGridHeader grid) {
+void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader grid) {
     ivec3 bricks_along = ivec3(gridwalk_brick_resolution(grid.resolution));
     ivec3 at = walk.cell >> 2;
     GridwalkBrick brick = GridwalkBricks(grid.bricks).brick[at.x + bricks_along.x * (at.y + bricks_along.y * at.z)];
@@ -324,21 +324,21 @@ void gridwalk_walk_enter(inout GridwalkWalk walk, GridwalkGridHeader grid) {
     bool jump = reach != 0;
     walk.low = jump ? max((at - ivec3(reach - 1)) << 2, ivec3(0)) : walk.cell;
     walk.high = jump ? min((at + ivec3(reach)) << 2, ivec3(grid.resolution)) : walk.cell + ivec3(1);
-    vec3 edges = gridwalk_boundary(grid.box_min, grid.cell_size, vec3(gridwalk_select(walk.up, walk.high, walk.low)));
+    precise vec3 edges = gridwalk_boundary(grid.box_min, grid.cell_size, vec3(gridwalk_select(walk.up, walk.high, walk.low)));
     walk.boundaries = (edges - walk.ray.origin) * walk.inverse + walk.never;
     walk.exit = max(walk.exit, min(walk.boundaries.x, min(walk.boundaries.y, walk.boundaries.z)));
 }
 
 ivec3 gridwalk_walk_cell_at(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
-    vec3 travelled = s * walk.ray.direction;
-    vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
+    precise vec3 travelled = s * walk.ray.direction;
+    precise vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
     // Clamped as floats: a conversion out of range may give anything.
     return ivec3(min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0)));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
-GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedRay ray) {
-    GridwalkWalk walk;
+precise GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedRay ray) {
+    precise GridwalkWalk walk;
     walk.ray = ray;
     bvec3 still = equal(ray.direction, vec3(0.0));
     walk.up = greaterThan(ray.direction, vec3(0.0));
@@ -357,7 +357,7 @@ GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedRay ray) 
 }
 
 // Into the next block; false outside of the grid.
-bool gridwalk_walk_step(inout GridwalkWalk walk, GridwalkGridHeader grid) {
+bool gridwalk_walk_step(precise inout GridwalkWalk walk, GridwalkGridHeader grid) {
     bool x = walk.boundaries.x <= walk.boundaries.y && walk.boundaries.x <= walk.boundaries.z;
     bool y = !x && walk.boundaries.y <= walk.boundaries.z;
     bvec3 along = bvec3(x, y, !x && !y);
@@ -383,11 +383,11 @@ bool gridwalk_walk_improves(GridwalkWalk walk, float s, uint triangle) {
     return s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle));
 }
 
-bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint triangle, out float s, out float u, out float v) {
+bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint triangle, precise out float s, precise out float u, precise out float v) {
     GridwalkTriangles triangles = GridwalkTriangles(grid.triangles);
-    vec3 v0 = triangles.vertex[3u * triangle].xyz;
-    vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
-    vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
+    precise vec3 v0 = triangles.vertex[3u * triangle].xyz;
+    precise vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
+    precise vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
     return gridwalk_intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && gridwalk_walk_improves(walk, s, triangle);
 }
 
@@ -399,11 +399,11 @@ uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
 
 // Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
 bool gridwalk_sees_front(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-    vec3 a = gridwalk_permute(ray, v0 - ray.origin);
-    vec3 e1 = gridwalk_permute(ray, v1 - ray.origin) - a;
-    vec3 e2 = gridwalk_permute(ray, v2 - ray.origin) - a;
-    vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-    float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
+    precise vec3 a = gridwalk_permute(ray, v0 - ray.origin);
+    precise vec3 e1 = gridwalk_permute(ray, v1 - ray.origin) - a;
+    precise vec3 e2 = gridwalk_permute(ray, v2 - ray.origin) - a;
+    precise vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+    precise float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
     return (facing < 0.0) == (ray.shear.z > 0.0);
 }
 
@@ -425,7 +425,7 @@ bool gridwalk_walk_accepts(GridwalkWalk walk, GridwalkGridHeader grid, uint tria
     return !culled || (flags & GRIDWALK_TRIANGLE_TWO_SIDED) != 0u;
 }
 
-void gridwalk_walk_commit(inout GridwalkWalk walk, float s, float u, float v, uint triangle) {
+void gridwalk_walk_commit(precise inout GridwalkWalk walk, float s, float u, float v, uint triangle) {
     walk.best_s = s;
     walk.best_u = u;
     walk.best_v = v;
@@ -453,15 +453,15 @@ struct GridwalkCandidates {
 
 bool gridwalk_is_hit(Hit hit) { return hit.triangle < GRIDWALK_UNFINISHED; }
 
-GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
-    GridwalkCandidates candidates;
+precise GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
+    precise GridwalkCandidates candidates;
     candidates.hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
     candidates.ray = ray;
     candidates.grid = grid.header;
     candidates.s = 0.0;
     candidates.turns = 0u;
     candidates.unfinished = false;
-    GridwalkMovedRay moved = gridwalk_move_ray(ray, candidates.grid);
+    precise GridwalkMovedRay moved = gridwalk_move_ray(ray, candidates.grid);
     candidates.searching = moved.valid;
     candidates.walk.best_triangle = GRIDWALK_MISS;
     if (moved.valid) {
@@ -472,15 +472,15 @@ GridwalkCandidates gridwalk_candidates(GridwalkGrid grid, Ray ray) {
 
 // Candidates of geometries that share a bit with the mask, without what is culled: GRIDWALK_CULL_BACK, GRIDWALK_CULL_FRONT, or 0. A front is
 // the side around which a triangle's vertices go counterclockwise.
-GridwalkCandidates gridwalk_candidates_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
-    GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
+precise GridwalkCandidates gridwalk_candidates_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+    precise GridwalkCandidates candidates = gridwalk_candidates(grid, ray);
     candidates.walk.mask = mask;
     candidates.walk.cull = cull;
     return candidates;
 }
 
 // One turn: a triangle is tested, or the walk steps. True if there is a candidate.
-bool gridwalk_turn(inout GridwalkCandidates candidates) {
+bool gridwalk_turn(precise inout GridwalkCandidates candidates) {
     candidates.unfinished = candidates.turns >= GRIDWALK_TURNS;
     candidates.turns += 1u;
     if (candidates.unfinished) {
@@ -488,8 +488,8 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
     } else if (candidates.walk.reference < candidates.walk.list_end) {
         uint triangle = GridwalkReferences(candidates.grid.references).triangle[candidates.walk.reference];
         candidates.walk.reference += 1u;
-        float u;
-        float v;
+        precise float u;
+        precise float v;
         if (gridwalk_walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)
             && gridwalk_walk_accepts(candidates.walk, candidates.grid, triangle)) {
             candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
@@ -502,7 +502,7 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
 }
 
 // Finds the next candidate; false when there is none, and from then on.
-bool gridwalk_next(inout GridwalkCandidates candidates) {
+bool gridwalk_next(precise inout GridwalkCandidates candidates) {
     while (candidates.searching) {
         if (gridwalk_turn(candidates)) {
             return true;
@@ -512,25 +512,25 @@ bool gridwalk_next(inout GridwalkCandidates candidates) {
 }
 
 // Makes the candidate the closest hit: later ones are closer still.
-void gridwalk_commit(inout GridwalkCandidates candidates) {
+void gridwalk_commit(precise inout GridwalkCandidates candidates) {
     gridwalk_walk_commit(candidates.walk, candidates.s, candidates.hit.u, candidates.hit.v, candidates.hit.triangle);
 }
 
 // Ends the search: gridwalk_next returns false.
-void gridwalk_terminate(inout GridwalkCandidates candidates) { candidates.searching = false; }
+void gridwalk_terminate(precise inout GridwalkCandidates candidates) { candidates.searching = false; }
 
-Hit gridwalk_committed(GridwalkCandidates candidates) {
+precise Hit gridwalk_committed(GridwalkCandidates candidates) {
     if (candidates.unfinished) {
         return Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_UNFINISHED);
     }
-    GridwalkWalk walk = candidates.walk;
+    precise GridwalkWalk walk = candidates.walk;
     if (walk.best_triangle == GRIDWALK_MISS) {
         return Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
     }
     return Hit(gridwalk_hit_distance(walk.ray, candidates.ray, walk.best_s), walk.best_u, walk.best_v, walk.best_triangle);
 }
 
-Hit gridwalk_closest_of(GridwalkCandidates candidates) {
+precise Hit gridwalk_closest_of(GridwalkCandidates candidates) {
     // One loop, in which all invocations take their turns together: see GRIDWALK_TURNS.
     while (candidates.searching) {
         if (gridwalk_turn(candidates)) {
@@ -540,23 +540,23 @@ Hit gridwalk_closest_of(GridwalkCandidates candidates) {
     return gridwalk_committed(candidates);
 }
 
-Hit gridwalk_any_of(GridwalkCandidates candidates) {
+precise Hit gridwalk_any_of(GridwalkCandidates candidates) {
     if (gridwalk_next(candidates)) {
         gridwalk_commit(candidates);
     }
     return gridwalk_committed(candidates);
 }
 
-Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) { return gridwalk_closest_of(gridwalk_candidates(grid, ray)); }
+precise Hit gridwalk_closest_hit(GridwalkGrid grid, Ray ray) { return gridwalk_closest_of(gridwalk_candidates(grid, ray)); }
 
-Hit gridwalk_closest_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+precise Hit gridwalk_closest_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
     return gridwalk_closest_of(gridwalk_candidates_filtered(grid, ray, mask, cull));
 }
 
 // The first hit that is found: its triangle is GRIDWALK_MISS if there is none.
-Hit gridwalk_any_hit(GridwalkGrid grid, Ray ray) { return gridwalk_any_of(gridwalk_candidates(grid, ray)); }
+precise Hit gridwalk_any_hit(GridwalkGrid grid, Ray ray) { return gridwalk_any_of(gridwalk_candidates(grid, ray)); }
 
-Hit gridwalk_any_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
+precise Hit gridwalk_any_hit_filtered(GridwalkGrid grid, Ray ray, uint mask, uint cull) {
     return gridwalk_any_of(gridwalk_candidates_filtered(grid, ray, mask, cull));
 }
 

@@ -80,8 +80,8 @@
 //!
 //! [`GRIDWALK_GLSL`] is the text of one include, without bindings: pass the grid region's address and call `gridwalk_closest_hit`,
 //! `gridwalk_any_hit`, or iterate over candidates. Its head documents the interface; [`GRIDWALK_GLSL_PATH`] is where it lies, for build
-//! scripts. All its names begin with `gridwalk`, in the case of their kind, but for the types `Ray` and `Hit`. Of Slang and HLSL nothing is
-//! offered: no compiler of theirs is part of the tests.
+//! scripts. All its names begin with `gridwalk`, in the case of their kind, but for the types `Ray` and `Hit`. It may be called in divergent
+//! code, with any size of subgroups. [`GRIDWALK_SLANG`] is the same in Slang. Of HLSL nothing is offered: no compiler of it is part of the tests.
 //!
 //! # Example
 //!
@@ -140,5 +140,11 @@ pub use tracer::{
 /// The public GLSL include in one piece: trace from your own shader.
 pub const GRIDWALK_GLSL: &str = include_str!("../glsl/gridwalk.glsl");
 
+/// The same in Slang, to be compiled with `-fp-mode precise`.
+pub const GRIDWALK_SLANG: &str = include_str!("../glsl/gridwalk.slang");
+
 /// Where [`GRIDWALK_GLSL`] lay when this crate was compiled: for the include path of a shader compiler in a build script.
 pub const GRIDWALK_GLSL_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/glsl/gridwalk.glsl");
+
+/// Where [`GRIDWALK_SLANG`] lay when this crate was compiled.
+pub const GRIDWALK_SLANG_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/glsl/gridwalk.slang");

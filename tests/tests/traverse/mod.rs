@@ -5,6 +5,7 @@ mod brute_force;
 mod compare;
 mod conventions;
 mod counts;
+mod divergent;
 mod filters;
 mod frames;
 mod hard_rays;

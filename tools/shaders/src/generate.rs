@@ -10,9 +10,9 @@ use anyhow::{Context, Result, anyhow, bail};
 use shaderc::{CompileOptions, Compiler, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind, SourceLanguage, TargetEnv};
 
 use crate::manifest::{self, Entry, FLAGS, GENERATION, HOST_TYPES, Manifest};
-use crate::source::{self, KernelSource, OWNERS, Owner};
+use crate::source::{self, KernelSource, OWNERS, Owner, PUBLIC_NAME};
 use crate::spirv::{self, Layout, Reflected};
-use crate::table;
+use crate::{published, table};
 
 /// Everything generated for one crate.
 #[derive(Debug)]
@@ -87,8 +87,12 @@ fn compile(root: &Path, compiler: &Compiler, kernel: &KernelSource) -> Result<Re
     options.set_optimization_level(OptimizationLevel::Zero);
     options.set_include_callback(|name, _, _, _| {
         let path = source::include_path(name);
-        let content = fs::read_to_string(root.join(&path)).map_err(|error| format!("{path}: {error} (names count from glsl/)"))?;
-        Ok(ResolvedInclude { resolved_name: path, content })
+        // Who includes it as users do gets what users get.
+        let content = match name {
+            PUBLIC_NAME => published::glsl(root, &path).map_err(|error| format!("{error:#}")),
+            _ => fs::read_to_string(root.join(&path)).map_err(|error| format!("{path}: {error} (names count from glsl/)")),
+        };
+        Ok(ResolvedInclude { resolved_name: path, content: content? })
     });
     let text = source::read(root, &kernel.path)?;
     let artifact =
@@ -109,14 +113,12 @@ fn assemble(root: &Path, owner: &'static Owner, kernels: Vec<(KernelSource, Refl
         let bytes: Vec<u8> = reflected.words.iter().flat_map(|word| word.to_le_bytes()).collect();
         entries.push(entry(root, &kernel.path, format!("spirv/{}.spv", kernel.name), bytes, &mut files)?);
     }
-    let include = match owner.public_include.map(|name| format!("glsl/{name}")) {
-        Some(path) if root.join(&path).exists() => {
-            let name = path.rsplit('/').next().unwrap_or_default();
-            let text = source::in_one_piece(root, &path)?;
-            Some(entry(root, &path, format!("glsl/{name}"), text.into_bytes(), &mut files)?)
+    let mut includes = Vec::new();
+    if let Some(path) = owner.public_include.map(|name| format!("glsl/{name}")).filter(|path| root.join(path).exists()) {
+        for (name, text) in [(PUBLIC_NAME, published::glsl(root, &path)?), ("gridwalk.slang", published::slang(root, &path)?)] {
+            includes.push(entry(root, &path, format!("glsl/{name}"), text.into_bytes(), &mut files)?);
         }
-        _ => None,
-    };
+    }
     if kernels.is_empty() {
         return Ok(Generated { owner, kernels, files: BTreeMap::new() });
     }
@@ -133,7 +135,7 @@ fn assemble(root: &Path, owner: &'static Owner, kernels: Vec<(KernelSource, Refl
         flags: FLAGS.to_owned(),
         host_types: table.as_ref().map(|_| manifest::host_types_hash(root)).transpose()?,
         table: table.as_ref().map(|source| manifest::hash(source.as_bytes())),
-        include,
+        includes,
         kernels: entries,
     };
     let manifest = format!("# Made by `{}`; do not edit.\n{}", manifest::CURE, toml::to_string(&manifest)?);

@@ -8,6 +8,7 @@
 #[cfg(feature = "compile")]
 pub mod generate;
 pub mod manifest;
+pub mod published;
 pub mod source;
 #[cfg(feature = "compile")]
 pub mod spirv;

@@ -27,7 +27,7 @@ struct Arguments {
     /// Print a table of the kernels
     #[arg(long)]
     stats: bool,
-    /// Only the kernels of this crate (gridwalk, render, bench or examples); may be given again
+    /// Only the kernels of this crate (gridwalk, render, bench, examples or tests); may be given again
     #[arg(long = "crate", value_name = "NAME")]
     only: Vec<String>,
     /// Root of the repository [default: found from the working folder]
@@ -61,9 +61,7 @@ fn run(arguments: &Arguments) -> Result<bool> {
     let mut seen = BTreeMap::new();
     loop {
         let mut now = times(&root.join("glsl"));
-        for (_, folder) in source::OWNERS.iter().flat_map(|owner| owner.sources) {
-            now.extend(times(&root.join(folder)));
-        }
+    /// Only the kernels of this crate (gridwalk, render, bench, examples or tests); may be given again
         if now != seen {
             seen = now;
             if let Err(error) = once(&root, arguments) {

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use crate::source::{self, OWNERS, Owner};
 
 /// Raised whenever the tool writes something else for the same sources, so that what an older tool wrote counts as stale.
-pub const GENERATION: u32 = 1;
+pub const GENERATION: u32 = 2;
 
 /// How the kernels are compiled; part of the manifest.
 pub const FLAGS: &str = "vulkan1.2, GLSL 460, optimization zero, NoContraction on all float arithmetic, names kept";
@@ -36,9 +36,9 @@ pub struct Manifest {
     /// Hash of the crate's `src/kernels.rs`, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<String>,
-    /// The public include in one piece, if the crate carries one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub include: Option<Entry>,
+    /// The public include in each language, if the crate carries it.
+    #[serde(default, rename = "include", skip_serializing_if = "Vec::is_empty")]
+    pub includes: Vec<Entry>,
     /// The kernels, in order of name.
     #[serde(default, rename = "kernel")]
     pub kernels: Vec<Entry>,
@@ -142,10 +142,10 @@ fn stale_of(root: &Path, owner: &Owner, stale: &mut Vec<String>) -> Result<()> {
     if let Some(hash) = &manifest.table {
         output("src/kernels.rs", hash);
     }
-    for entry in manifest.kernels.iter().chain(&manifest.include) {
+    for entry in manifest.kernels.iter().chain(&manifest.includes) {
         output(&entry.output, &entry.output_hash);
     }
-    for entry in manifest.kernels.iter().chain(&manifest.include) {
+    for entry in manifest.kernels.iter().chain(&manifest.includes) {
         if !root.join(&entry.source).exists() {
             stale.push(format!("{folder}/{}: its source {} is gone", entry.output, entry.source));
         } else if source_hash(root, &entry.source)? != entry.source_hash {

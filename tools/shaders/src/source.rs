@@ -45,15 +45,19 @@ pub const OWNERS: [Owner; 4] = [
         public_include: None,
     },
     Owner { name: "examples", folder: "examples", sources: &[("map", "examples/shaders")], kernel_types: None, public_include: None },
+    Owner { name: "tests", folder: "tests", sources: &[("map", "tests/shaders")], kernel_types: None, public_include: None },
 ];
 
-/// What users of the library include, below `glsl/`.
+/// The public include's name for those who use the library.
+pub const PUBLIC_NAME: &str = "gridwalk.glsl";
+
+/// Its source, below `glsl/`.
 const PUBLIC_INCLUDE: &str = "shared/gridwalk.glsl";
 
 /// The path below the root of what an `#include` names: names count from `glsl/`, and the public include is known by its bare name too, as
 /// users have it.
 pub fn include_path(name: &str) -> String {
-    format!("glsl/{}", if name == "gridwalk.glsl" { PUBLIC_INCLUDE } else { name })
+    format!("glsl/{}", if name == PUBLIC_NAME { PUBLIC_INCLUDE } else { name })
 }
 
 impl Owner {
@@ -196,7 +200,7 @@ fn prefixed(text: &str) -> String {
 }
 
 /// A line as words and what stands between them.
-fn words(line: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn words(line: &str) -> impl Iterator<Item = &str> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     line.split_inclusive(move |c| !is_word(c)).flat_map(move |piece| {
         let (word, sign) = piece.split_at(piece.trim_end_matches(|c| !is_word(c)).len());
@@ -216,7 +220,7 @@ pub fn global_names(text: &str) -> Vec<&str> {
             let name = match parts.as_slice() {
                 ["#", "define", name, ..] | ["struct", name, ..] | ["const", _, name, ..] => Some(*name),
                 ["layout", ..] => parts.iter().position(|word| *word == "buffer").and_then(|at| parts.get(at + 1)).copied(),
-                [_, name, "(", ..] if *name != "(" => Some(*name),
+                ["precise", _, name, "(", ..] | [_, name, "(", ..] if *name != "(" => Some(*name),
                 _ => None,
             };
             names.extend(name);
