@@ -61,7 +61,9 @@ fn run(arguments: &Arguments) -> Result<bool> {
     let mut seen = BTreeMap::new();
     loop {
         let mut now = times(&root.join("glsl"));
-    /// Only the kernels of this crate (gridwalk, render, bench, examples or tests); may be given again
+        for (_, folder) in source::OWNERS.iter().flat_map(|owner| owner.sources) {
+            now.extend(times(&root.join(folder)));
+        }
         if now != seen {
             seen = now;
             if let Err(error) = once(&root, arguments) {

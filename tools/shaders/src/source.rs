@@ -22,7 +22,7 @@ pub struct Owner {
 }
 
 /// All crates that own kernels.
-pub const OWNERS: [Owner; 4] = [
+pub const OWNERS: [Owner; 5] = [
     Owner {
         name: "gridwalk",
         folder: "crates/gridwalk",
