@@ -24,6 +24,8 @@ pub enum Exit {
     Output,
     /// Ctrl-C.
     Interrupted,
+    /// The signal to terminate.
+    Terminated,
 }
 
 impl Exit {
@@ -39,6 +41,7 @@ impl Exit {
             Exit::DeviceLost => 6,
             Exit::Output => 7,
             Exit::Interrupted => 130,
+            Exit::Terminated => 143,
         }
     }
 }
@@ -54,7 +57,8 @@ Exit status:
     5  out of memory
     6  the device was lost or did not answer
     7  a file cannot be written
-  130  interrupted";
+  130  interrupted (Ctrl-C)
+  143  terminated by a signal";
 
 /// An error with the exit status that it leads to.
 #[derive(Debug)]

@@ -69,7 +69,11 @@ impl Drop for Engine {
 /// A grid in device memory, ready for rays.
 pub struct Grid {
     engine: Arc<Engine>,
+    /// What was asked for, and what it is built with.
+    wanted: BuildSettings,
     settings: BuildSettings,
+    /// Triangles that there were when the density was lowered.
+    lowered_for: Option<u32>,
     capacity: Capacity,
     grid: Buffer,
     scratch: Option<Buffer>,
@@ -146,7 +150,8 @@ impl GridBuilder {
     /// soon finds room.
     fn build_beyond(&self, scene: &GpuScene, settings: &BuildSettings, outgrown: Option<Outgrown>) -> Result<Grid> {
         let geometry = scene.geometry();
-        let mut settings = *settings;
+        let wanted = *settings;
+        let mut settings = wanted;
         let first_pairs = u64::from(geometry.triangle_count) * FIRST_PAIRS_EACH + 1024;
         let mut pairs = outgrown.as_ref().and_then(|outgrown| outgrown.pairs).map_or(first_pairs, u64::from);
         let mut needed = u32::MAX;
@@ -181,6 +186,8 @@ impl GridBuilder {
             grid.stats.attempts = attempts;
             let report = &grid.stats.report;
             if !report.pairs_overflowed() {
+                grid.wanted = wanted;
+                grid.lowered_for = (settings.density < wanted.density).then_some(geometry.triangle_count);
                 return Ok(grid);
             }
             needed = report.pair_total;
@@ -221,7 +228,9 @@ impl GridBuilder {
             queries: Queries::new(context, sizes.timestamp_count)?,
             query_count: sizes.timestamp_count,
             engine: Arc::clone(&self.engine),
+            wanted: settings,
             settings,
+            lowered_for: None,
             capacity,
             grid,
             scratch: Some(scratch),
@@ -253,7 +262,8 @@ impl Grid {
         &self.stats
     }
 
-    /// The settings that it was built with; the density may have been lowered until the grid fitted.
+    /// The settings that it was built with; the density may have been lowered until the grid fitted, and is tried again where a rebuild has
+    /// fewer triangles.
     pub fn settings(&self) -> &BuildSettings {
         &self.settings
     }
@@ -299,7 +309,9 @@ impl Grid {
     pub fn rebuild(&mut self, scene: &GpuScene) -> Result<()> {
         let geometry = scene.geometry();
         let builder = GridBuilder { engine: Arc::clone(&self.engine) };
-        if geometry.triangle_count <= self.capacity.triangles {
+        // Tried again when there is an eighth less, so that a scene that shrinks a little each frame does not make its grid anew each time.
+        let may_be_finer = self.lowered_for.is_some_and(|triangles| geometry.triangle_count <= triangles - triangles.div_ceil(8));
+        if geometry.triangle_count <= self.capacity.triangles && !may_be_finer {
             if self.scratch.is_none() {
                 let size = self.engine.tracer()?.build_sizes(&self.capacity)?.scratch.size;
                 let desc = BufferDesc { name: "build scratch", size, kind: BufferKind::Device, dedicated: true };
@@ -311,13 +323,13 @@ impl Grid {
                 return Ok(());
             }
         }
-        let settings = self.settings;
-        let overflowed = geometry.triangle_count <= self.capacity.triangles;
+        let overflowed = geometry.triangle_count <= self.capacity.triangles && !may_be_finer;
         let pairs = self.stats.report.needed_pairs().filter(|&pairs| overflowed && pairs <= MAX_PAIRS);
         let outgrown = Outgrown { capacity: self.capacity, pairs };
         // The old memory goes first: the new one may not fit beside it.
         self.scratch = None;
-        *self = builder.build_beyond(scene, &settings, Some(outgrown))?;
+        let wanted = self.wanted;
+        *self = builder.build_beyond(scene, &wanted, Some(outgrown))?;
         Ok(())
     }
 

@@ -749,10 +749,10 @@ const _: () = {
     assert!(size(|host: &Host| &host.normal_map) == 4);
     assert!(core::mem::offset_of!(Host, bump_scale) == 68);
     assert!(size(|host: &Host| &host.bump_scale) == 4);
-    assert!(core::mem::offset_of!(Host, reserved0) == 72);
-    assert!(size(|host: &Host| &host.reserved0) == 4);
-    assert!(core::mem::offset_of!(Host, reserved1) == 76);
-    assert!(size(|host: &Host| &host.reserved1) == 4);
+    assert!(core::mem::offset_of!(Host, number) == 72);
+    assert!(size(|host: &Host| &host.number) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 76);
+    assert!(size(|host: &Host| &host.reserved) == 4);
     assert!(size_of::<Host>() == 80);
 };
 const _: () = {

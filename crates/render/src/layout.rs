@@ -26,8 +26,8 @@ pub(crate) struct Material {
     pub(crate) opacity_map: u32,
     pub(crate) normal_map: u32,
     pub(crate) bump_scale: f32,
-    pub(crate) reserved0: u32,
-    pub(crate) reserved1: u32,
+    pub(crate) number: u32,
+    pub(crate) reserved: u32,
 }
 
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]

@@ -4,6 +4,7 @@ use crate::{Buffer, BufferDesc, BufferKind, Context, Error, Result, layout};
 use ash::vk;
 use gridwalk::Geometry;
 use gridwalk_scene::{Background, Light, Material, Mesh, Scene, Texture};
+use std::collections::HashMap;
 
 /// A scene in device memory: geometry, materials, textures, lights, background.
 #[derive(Debug)]
@@ -140,6 +141,8 @@ struct Surfaces {
     has_blends: bool,
     /// Of vertices, whatever the material.
     has_opacities: bool,
+    /// Of each name the first material that the scene had from the beginning.
+    numbers: HashMap<String, u32>,
 }
 
 impl Surfaces {
@@ -156,17 +159,40 @@ impl Surfaces {
             has_mirrors: false,
             has_blends: false,
             has_opacities: has_opacities(scene),
+            numbers: HashMap::new(),
         };
+        for (number, material) in (0..).zip(&scene.materials) {
+            surfaces.numbers.entry(material.name.clone()).or_insert(number);
+        }
         surfaces.append(context, scene, false)?;
         Ok(surfaces)
+    }
+
+    /// The number in the layer `id` of a material that a key-frame has added: that of the scene's own material of its name, or else one that
+    /// is made of the name. So it does not depend on which key-frames were read before.
+    fn late_number(&self, name: &str) -> u32 {
+        self.numbers.get(name).copied().unwrap_or_else(|| {
+            // FNV-1a.
+            let hash = name.bytes().fold(0x811C_9DC5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
+            // Above the numbers of any table, and not what stands for the background.
+            (hash | 1 << 31).min(u32::MAX - 1)
+        })
     }
 
     /// Brings the materials and textures to the device that it does not have yet; the scene was checked. With `slack`, what must grow grows
     /// by a quarter at least. Returns the number of buffers that were made anew.
     fn append(&mut self, context: &Context, scene: &Scene, slack: bool) -> Result<u32> {
         let added = scene.materials.get(self.material_count..).unwrap_or_default();
-        let materials: Vec<layout::Material> =
-            added.iter().map(|material| device_material(material, &scene.textures, self.has_opacities)).collect();
+        let is_first = self.material_count == 0;
+        let number = |(at, material): (usize, &Material)| if is_first { at as u32 } else { self.late_number(&material.name) };
+        let materials: Vec<layout::Material> = added
+            .iter()
+            .enumerate()
+            .map(|(at, material)| layout::Material {
+                number: number((at, material)),
+                ..device_material(material, &scene.textures, self.has_opacities)
+            })
+            .collect();
         let mut first_texel = self.texel_count;
         let mut textures = Vec::new();
         let new_textures = scene.textures.get(self.texture_count..).unwrap_or_default();
@@ -615,8 +641,8 @@ fn device_material(material: &Material, textures: &[Texture], has_opacities: boo
         opacity_map: map(opacity_map),
         normal_map: map(material.normal_map),
         bump_scale: material.bump_scale,
-        reserved0: 0,
-        reserved1: 0,
+        number: 0,
+        reserved: 0,
     }
 }
 

@@ -20,7 +20,8 @@ pub enum Aov {
     Albedo,
     /// Texture coordinates.
     Uv,
-    /// Triangle within its mesh, mesh, and material, as integers; 4294967295 on the background.
+    /// Triangle within its mesh, mesh, and material, as integers; 4294967295 on the background. A material that only a later key-frame has is
+    /// told by the number of the scene's own of that name, or else by 2147483648 or more, made of the name: the same in every frame.
     Id,
     /// Cells that the walk visited.
     Steps,

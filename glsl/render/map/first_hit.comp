@@ -64,7 +64,7 @@ void main() {
         record.geometric_normal = point.geometric_normal;
         record.v = point.uv.y;
         record.albedo = point.colour * mapped_colour(scene, material.diffuse, material.diffuse_map, point.uv);
-        record.material = point.material;
+        record.material = material.number;
         record.primitive = hit.triangle - SceneUints(scene.table.mesh_starts).word[point.mesh];
         record.mesh = point.mesh;
     }

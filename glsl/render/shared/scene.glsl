@@ -23,8 +23,8 @@ struct Material {
     uint opacity_map;
     uint normal_map;
     float bump_scale;
-    uint reserved0;
-    uint reserved1;
+    uint number; // in the layer of numbers: that of the table but for what key-frames have added
+    uint reserved;
 };
 
 // Rows from the top, RGBA of 8 bits a texel.

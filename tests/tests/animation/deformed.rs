@@ -72,7 +72,7 @@ impl Bytes {
 }
 
 /// The tube bends by a quarter turn about z within a second and blows up, then falls back; beside it a node moves a box of one triangle.
-fn file() -> tempfile::TempDir {
+pub(super) fn file() -> tempfile::TempDir {
     let tube = tube();
     let mut bytes = Bytes::default();
     let positions = bytes.floats(&tube.positions, "VEC3");

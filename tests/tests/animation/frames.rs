@@ -103,4 +103,77 @@ fn what_stands_still_is_built_once() {
     let mut still = player(Animation::still(animation(folder.path()).scene));
     let stats = seek(&mut still, 7.0, &[8.0]);
     assert!(!stats.rebuilt && stats.build.report.triangles > 0, "{stats:?}");
+    assert_eq!(stats.first_build.map(|build| build.report.triangles), Some(stats.build.report.triangles), "the first seek tells of it");
+    assert!(seek(&mut still, 8.0, &[]).first_build.is_none());
+}
+
+/// Key-frames that bring materials of their own, late and each time others: whichever were read before, a frame has the same layers, the
+/// numbers of materials included.
+#[test]
+fn materials_that_come_late_have_the_same_numbers_in_every_order() {
+    let ball = generate::sphere([0.0; 3], 1.0, 12);
+    // Materials of the thirds of each key-frame's triangles; "b" and "d" have other colours in the third library.
+    let keys = [["a", "b", "b"], ["b", "c", "d"], ["d", "a", "e"], ["f", "e", "b"], ["c", "c", "c"], ["f", "g", "d"]];
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    for (key, names) in keys.iter().enumerate() {
+        let text = obj(&moved(ball.clone(), [0.0, 0.1 * key as f32, 0.0]));
+        let (vertices, faces) = text.split_at(text.find("f ").unwrap());
+        let faces: Vec<&str> = faces.lines().collect();
+        let mut text = format!("mtllib {}.mtl\n{vertices}", key / 2);
+        for (name, part) in names.iter().zip(faces.chunks(faces.len().div_ceil(3))) {
+            writeln!(text, "usemtl {name}\n{}", part.join("\n")).unwrap();
+        }
+        files.push((format!("key.{key:04}.obj"), text.into_bytes()));
+    }
+    for library in 0..3 {
+        let mut text = String::new();
+        for (at, name) in ["a", "b", "c", "d", "e", "f", "g"].iter().enumerate() {
+            let late = f64::from(u32::from(library == 2 && at % 2 == 1)) * 0.05;
+            writeln!(text, "newmtl {name}\nKd {} 0.5 {late}\nmap_Kd {name}.png", 0.1 * at as f64).unwrap();
+        }
+        files.push((format!("{library}.mtl"), text.into_bytes()));
+    }
+    for (at, name) in ["a", "b", "c", "d", "e", "f", "g"].iter().enumerate() {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.write_header().unwrap().write_image_data(&[200, 30 * at as u8, 90]).unwrap();
+        files.push((format!("{name}.png"), bytes));
+    }
+    files.push(("scene.toml".to_owned(), b"[[mesh]]\nsequence = \"key.%04d.obj\"\nfps = 10\n[[mesh]]\nshape = \"box\"\n".to_vec()));
+    let folder = folder(&files);
+    let numbers = |layers: &Layers| -> std::collections::BTreeSet<u32> {
+        layers.get("id").unwrap().uints().unwrap().chunks_exact(3).map(|pixel| pixel[2]).filter(|&number| number != u32::MAX).collect()
+    };
+    // With frames between key-frames, which are of the first one's materials.
+    let times: Vec<f64> = (0..11).map(|frame| f64::from(frame) / 20.0).collect();
+    let alone: Vec<Layers> = times
+        .iter()
+        .map(|&time| {
+            let mut run = play(folder.path());
+            seek(&mut run, time, &[]);
+            shoot_player(&run)
+        })
+        .collect();
+    let mut seen = std::collections::BTreeSet::new();
+    for order in [[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10], [10, 2, 6, 4, 9, 0, 8, 7, 1, 3, 5]] {
+        let mut run = play(folder.path());
+        for frame in order {
+            seek(&mut run, times[frame], &[times[(frame + 1) % 11], times[(frame + 3) % 11]]);
+            let layers = shoot_player(&run);
+            assert_same_picture(&format!("frame {frame}"), &layers, &alone[frame]);
+            seen.extend(numbers(&layers));
+        }
+        // Negative control: in the table, they come in another order.
+        let names: Vec<&str> = run.animation().scene.materials.iter().map(|material| material.name.as_str()).collect();
+        assert_eq!(names[..3], ["default", "a", "b"], "{names:?}");
+        assert!(names.contains(&"g") && names.len() >= 10, "{names:?}");
+        assert_eq!(names[3] == "c", order[0] == 0, "{names:?}");
+    }
+    // a and b are the scene's own; c, d, e, f and g are not, whichever library they come from.
+    assert_eq!(
+        (seen.range(..3).count(), seen.range(1 << 31..).count(), seen.len()),
+        (seen.range(..1 << 31).count(), 5, 5 + seen.range(..3).count())
+    );
+    assert!(seen.contains(&1) && seen.contains(&2), "{seen:?}");
 }

@@ -279,6 +279,13 @@ fn a_key_frame_that_is_missing_or_broken() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_after_the_frame() {
+    for (signal, status) in [("INT", 130), ("TERM", 143)] {
+        interrupted(signal, status);
+    }
+}
+
+#[cfg(unix)]
+fn interrupted(signal: &str, status: i32) {
     use std::io::{BufRead, BufReader};
     use std::process::Stdio;
     let folder = moving(0, &[]);
@@ -289,7 +296,7 @@ fn an_interrupt_ends_after_the_frame() {
     let mut text = String::new();
     reader.read_line(&mut text).unwrap();
     // From here on it has 499,999 frames to go.
-    let kill = std::process::Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    let kill = std::process::Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().unwrap();
     assert!(kill.success());
     for line in reader.lines() {
         text.push_str(&line.unwrap());
@@ -297,7 +304,7 @@ fn an_interrupt_ends_after_the_frame() {
     }
     let mut output = child.wait_with_output().unwrap();
     output.stdout = text.into_bytes();
-    let run = Run::new(line.to_owned(), output).expect(130);
+    let run = Run::new(line.to_owned(), output).expect(status);
     let (frames, last) = lines(&run);
     assert!(run.stderr.contains("interrupted") && last["interrupted"] == true, "{}", run.stderr);
     let count = frames.len();
@@ -310,6 +317,59 @@ fn an_interrupt_ends_after_the_frame() {
     assert_eq!(movie.len(), count);
     let (_, _, _, still) = decode_png(&fs::read(at.join(format!("f{}.png", count - 1))).unwrap());
     assert!(movie[count - 1].0.chunks_exact(4).flat_map(|pixel| &pixel[..3]).eq(&still));
+}
+
+/// The first signal ends after the frame at hand, which here lasts for ever; the second at once, without a trace.
+#[cfg(unix)]
+#[test]
+fn a_second_interrupt_does_not_wait() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    let folder = moving(0, &[]);
+    let at = folder.path();
+    for (first, second, status) in [("INT", "INT", 130), ("TERM", "INT", 130), ("INT", "TERM", 143)] {
+        let line = "animate two.obj --turntable 10 --spp 65536 -o f#.png -o m.gif -o m.apng -o m.y4m -v";
+        let mut child = prepared(at, words(line)).stderr(Stdio::piped()).spawn().unwrap();
+        let id = child.id().to_string();
+        let signal = |name: &str| {
+            let kill = std::process::Command::new("kill").args(["-s", name, &id]).status().unwrap();
+            assert!(kill.success());
+        };
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(|line| line.unwrap());
+        assert!(lines.any(|line| line.contains("info: grid of")));
+        assert_eq!(entries(at).iter().filter(|name| name.ends_with(".part")).count(), 3, "{:?}", entries(at));
+        signal(first);
+        assert!(lines.any(|line| line.contains("ending after this frame")));
+        signal(second);
+        assert_eq!(child.wait().unwrap().code(), Some(status));
+        assert_eq!(entries(at), ["two.obj"]);
+    }
+}
+
+/// Resident memory of the program does not grow with the number of frames.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_long_run_takes_no_more_memory() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    let folder = moving(7, &[]);
+    let at = folder.path();
+    let line = format!("{SMALL} --fps 480 --duration 10 --json -o m.apng -o f#.png --overwrite always");
+    let mut child = prepared(at, words(&line)).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let resident = |id: u32| -> i64 {
+        let text = fs::read_to_string(format!("/proc/{id}/statm")).unwrap();
+        text.split_whitespace().nth(1).unwrap().parse::<i64>().unwrap() * 4
+    };
+    let mut seen = Vec::new();
+    for line in BufReader::new(child.stdout.take().unwrap()).lines().take(301) {
+        let line: serde_json::Value = serde_json::from_str(&line.unwrap()).unwrap();
+        assert!(seen.len() < 20 || line["grown"] == 0, "{line}");
+        seen.push(resident(child.id()));
+    }
+    std::process::Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    child.wait().unwrap();
+    let most = |hundred: usize| *seen[100 * hundred..][..100].iter().max().unwrap();
+    assert!(most(2) - most(1) < 8 << 10, "KiB after each frame: {seen:?}");
 }
 
 /// A program that notes its arguments and keeps what it gets in the file that it is told to write.
@@ -360,6 +420,47 @@ fn video_goes_through_ffmpeg() {
     with_path(at, "-o a.gif -o a.mkv --size 20x16", &at.join("nothing").display().to_string())
         .fails(7, &["a.mkv", "not installed", ".apng"]);
     assert_eq!(results(at), ["bin"], "what failed leaves nothing");
+}
+
+/// With the real program, where it is installed: what it makes is decoded by it again, and is the pictures.
+#[cfg(unix)]
+#[test]
+fn video_can_be_played() {
+    let ffmpeg =
+        |arguments: &[&str]| std::process::Command::new("ffmpeg").args(["-hide_banner", "-loglevel", "error"]).args(arguments).output();
+    let Ok(encoders) = ffmpeg(&["-encoders"]) else {
+        eprintln!("skipped: ffmpeg is not installed");
+        return;
+    };
+    let encoders = String::from_utf8_lossy(&encoders.stdout).into_owned();
+    // The last ones are far smaller.
+    let folder = moving(8, &[1, 2, 3, 4]);
+    let at = folder.path();
+    for (key, name) in [5, 6, 7].into_iter().zip(1..) {
+        fs::rename(at.join(format!("move.{key}.obj")), at.join(format!("move.{name}.obj"))).unwrap();
+    }
+    animate(at, "--size 64x48 -o f#.png").expect(0);
+    let stills: Vec<Vec<u8>> = (0..4).map(|frame| pixels(at, &format!("f{frame}.png"))).collect();
+    for (name, encoder) in [("a.mp4", "libx264"), ("a.mkv", "libx264"), ("a.webm", "libvpx-vp9")] {
+        if !encoders.contains(encoder) {
+            eprintln!("skipped: ffmpeg has no {encoder}");
+            continue;
+        }
+        animate(at, &format!("--size 64x48 --chroma 444 -o {name}")).expect(0);
+        let path = at.join(name);
+        let decoded = ffmpeg(&["-i", path.to_str().unwrap(), "-f", "rawvideo", "-pix_fmt", "rgb24", "-vsync", "0", "-"]).unwrap();
+        assert!(decoded.status.success(), "{name}: {}", String::from_utf8_lossy(&decoded.stderr));
+        assert_eq!(decoded.stdout.len(), 4 * 64 * 48 * 3, "{name}");
+        let error = |frame: &[u8], still: &[u8]| {
+            let sum: f64 = frame.iter().zip(still).map(|(a, b)| (f64::from(*a) - f64::from(*b)).abs()).sum();
+            sum / still.len() as f64
+        };
+        for (index, (frame, still)) in decoded.stdout.chunks_exact(64 * 48 * 3).zip(&stills).enumerate() {
+            assert!(error(frame, still) < 3.0, "{name}, frame {index}: {}", error(frame, still));
+        }
+        let first = &decoded.stdout[..64 * 48 * 3];
+        assert!(error(first, &stills[3]) > 1.5 * error(first, &stills[0]), "the comparison tells frames apart");
+    }
 }
 
 #[test]

@@ -60,7 +60,18 @@ fn help_and_version_are_results() {
         assert!(run.text().contains("gridwalk") && run.stderr.is_empty(), "{line}");
     }
     let help = gridwalk(folder.path(), words("--help")).expect(0).text();
-    for status in ["0  done", "1  done, but", "2  wrong", "3  a file", "4  no", "5  out", "6  the", "7  a file", "130  interrupted"] {
+    for status in [
+        "0  done",
+        "1  done, but",
+        "2  wrong",
+        "3  a file",
+        "4  no",
+        "5  out",
+        "6  the",
+        "7  a file",
+        "130  interrupted",
+        "143  terminated",
+    ] {
         assert!(help.contains(status), "{status}");
     }
 }

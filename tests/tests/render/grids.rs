@@ -129,3 +129,26 @@ fn triangles_are_counted_within_their_mesh() {
     assert_eq!(gpu.mesh_starts(), [0, 12, 12]);
     assert_eq!([0, 11, 12, 19, 20].map(|triangle| gpu.locate(triangle)), [Some((0, 0)), Some((0, 11)), Some((2, 0)), Some((2, 7)), None]);
 }
+
+/// A density that was lowered for many triangles comes back when there are few.
+#[test]
+fn a_grid_that_was_made_coarser_becomes_finer_again() {
+    let context = Context::new(&ContextDesc { memory_limit: Some(16 << 20), ..ContextDesc::default() }).unwrap();
+    let [many, fewer, few] = [3000, 2900, 20].map(|triangles| GpuScene::upload(&context, &crossing(triangles)).unwrap());
+    let builder = GridBuilder::new(&context).unwrap();
+    let settings = BuildSettings { density: 50.0, ..BuildSettings::default() };
+    let mut grid = builder.build(&many, &settings).unwrap();
+    let lowered = grid.stats().report.density;
+    assert!(lowered < 50.0);
+    let made = context.allocations();
+    grid.rebuild(&fewer).unwrap();
+    assert_eq!((grid.stats().report.density, context.allocations()), (lowered, made), "nearly as many: in the same memory");
+    for _ in 0..2 {
+        grid.rebuild(&few).unwrap();
+        let alone = builder.build(&few, &settings).unwrap();
+        let (again, alone) = (&grid.stats().report, &alone.stats().report);
+        assert_eq!((again.density, again.resolution, again.pairs), (50.0, alone.resolution, alone.pairs));
+        grid.rebuild(&many).unwrap();
+        assert_eq!(grid.stats().report.density, lowered);
+    }
+}

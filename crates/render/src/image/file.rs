@@ -1,8 +1,10 @@
 //! Files that appear whole or not at all.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Cursor, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::{Error, Result};
 
@@ -42,8 +44,8 @@ pub(super) struct PartFile {
 }
 
 enum Place {
-    /// A temporary file, and what it becomes.
-    Beside(tempfile::NamedTempFile, PathBuf),
+    /// A temporary file, what it becomes, and its note among those that are not finished.
+    Beside(tempfile::NamedTempFile, PathBuf, Unfinished),
     /// For what cannot seek: written out when it is complete.
     Memory(Cursor<Vec<u8>>, Box<dyn Write + Send>),
     /// Bytes go where they belong at once.
@@ -53,7 +55,7 @@ enum Place {
 impl std::fmt::Debug for Place {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Place::Beside(temporary, target) => f.debug_tuple("Beside").field(temporary).field(target).finish(),
+            Place::Beside(temporary, target, _) => f.debug_tuple("Beside").field(temporary).field(target).finish(),
             Place::Memory(bytes, _) => f.debug_tuple("Memory").field(&bytes.get_ref().len()).finish(),
             Place::Through(_) => f.write_str("Through"),
         }
@@ -90,8 +92,8 @@ impl PartFile {
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
-        let temporary = builder.tempfile_in(&folder).map_err(|error| failed(plain(error)))?;
-        Ok(PartFile { path: path.to_owned(), overwrite, place: Place::Beside(temporary, target) })
+        let (temporary, unfinished) = Unfinished::make(|| builder.tempfile_in(&folder)).map_err(|error| failed(plain(error)))?;
+        Ok(PartFile { path: path.to_owned(), overwrite, place: Place::Beside(temporary, target, unfinished) })
     }
 
     /// Something that was opened by others; `name` is for messages. What seeks is gathered in memory first.
@@ -108,7 +110,7 @@ impl PartFile {
     /// The name that it has so far, for programs that write by name; `None` for what is no file.
     pub(super) fn temporary_path(&self) -> Option<&Path> {
         match &self.place {
-            Place::Beside(temporary, _) => Some(temporary.path()),
+            Place::Beside(temporary, ..) => Some(temporary.path()),
             Place::Memory(..) | Place::Through(_) => None,
         }
     }
@@ -118,7 +120,7 @@ impl PartFile {
         let PartFile { path, overwrite, place } = self;
         let failed = |source: io::Error| write_error(&path, source);
         match place {
-            Place::Beside(temporary, target) => {
+            Place::Beside(temporary, target, _unfinished) => {
                 // A disk that is full may say so only now; after the rename it would be too late.
                 temporary.as_file().sync_all().map_err(failed)?;
                 match overwrite {
@@ -139,7 +141,7 @@ impl PartFile {
 impl Write for PartFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.place {
-            Place::Beside(temporary, _) => temporary.as_file_mut().write(bytes),
+            Place::Beside(temporary, ..) => temporary.as_file_mut().write(bytes),
             Place::Memory(memory, _) => memory.write(bytes),
             Place::Through(writer) => writer.write(bytes),
         }
@@ -147,7 +149,7 @@ impl Write for PartFile {
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.place {
-            Place::Beside(temporary, _) => temporary.as_file_mut().flush(),
+            Place::Beside(temporary, ..) => temporary.as_file_mut().flush(),
             Place::Memory(..) => Ok(()),
             Place::Through(writer) => writer.flush(),
         }
@@ -157,11 +159,50 @@ impl Write for PartFile {
 impl Seek for PartFile {
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         match &mut self.place {
-            Place::Beside(temporary, _) => temporary.as_file_mut().seek(position),
+            Place::Beside(temporary, ..) => temporary.as_file_mut().seek(position),
             Place::Memory(memory, _) => memory.seek(position),
             Place::Through(_) => Err(ErrorKind::NotSeekable.into()),
         }
     }
+}
+
+/// Temporary files that exist.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn all_unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A temporary file's note among [`UNFINISHED`], gone when this is dropped.
+#[derive(Debug)]
+struct Unfinished(PathBuf);
+
+impl Unfinished {
+    fn make(create: impl FnOnce() -> io::Result<tempfile::NamedTempFile>) -> io::Result<(tempfile::NamedTempFile, Unfinished)> {
+        // Under the lock, so that there is never a file without a note.
+        let mut all = all_unfinished();
+        let temporary = create()?;
+        let path = temporary.path().to_owned();
+        all.insert(path.clone());
+        Ok((temporary, Unfinished(path)))
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        all_unfinished().remove(&self.0);
+    }
+}
+
+/// Removes all files of this module that are not finished, and lets no other begin: for a program that ends right after, without dropping
+/// its encoders. Files that are finished stay; whatever else writes pictures or movies waits for ever.
+pub fn remove_unfinished() {
+    let all = all_unfinished();
+    for path in all.iter() {
+        // One that has just got its name is not there any more.
+        let _ = fs::remove_file(path);
+    }
+    std::mem::forget(all);
 }
 
 /// tempfile puts the temporary path, which means nothing to anyone, into its messages.

@@ -24,7 +24,7 @@ pub use apng::ApngEncoder;
 pub use diff::{Difference, LayerDifference, diff};
 pub use error::{Error, Result};
 pub use exr::encode_exr;
-pub use file::{Overwrite, SeekWrite, write_file};
+pub use file::{Overwrite, SeekWrite, remove_unfinished, write_file};
 pub use gif::GifEncoder;
 pub use heatmap::{Heatmap, heatmap, ramp};
 pub use movie::{MovieDesc, MovieFormat, MovieWriter};

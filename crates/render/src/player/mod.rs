@@ -11,7 +11,7 @@ mod staging;
 mod stats;
 
 use crate::{
-    BuildSettings, Context, Error, GpuScene, Grid, GridBuilder, Result, kernels,
+    BuildSettings, BuildStats, Context, Error, GpuScene, Grid, GridBuilder, Result, kernels,
     pipeline::{Pipeline, Recorder, Timer, map_groups},
     push,
     scene::{Arrays, VertexRange, check_room, update_buffer, with_slack},
@@ -51,6 +51,10 @@ pub struct Player {
     grid: Grid,
     /// Whether the grid is that of the scene as it is now.
     is_built: bool,
+    /// Buffers that were made anew, until a seek tells of them.
+    grown: u32,
+    /// The build by which the player was made, until a seek tells of it.
+    first_build: Option<BuildStats>,
     timer: Timer,
     kernels: MotionKernels,
     animation: Animation,
@@ -173,6 +177,8 @@ impl Player {
             timeline,
             meshes,
             scene: gpu,
+            grown: 0,
+            first_build: Some(grid.stats().clone()),
             grid,
             is_built: true,
             timer: Timer::new(context)?,
@@ -221,7 +227,24 @@ impl Player {
             stats.grown += if *self.grid.capacity() == capacity { 0 } else { GRID_BUFFERS };
         }
         stats.build = self.grid.stats().clone();
+        stats.first_build = self.first_build.take();
         Ok(stats)
+    }
+
+    /// Whether a seek to this time would find its key-frames read and sent to the device, or known to be missing, without waiting for them.
+    /// They are on their way once a seek has named them as upcoming.
+    pub fn is_ready(&mut self, time: f64) -> bool {
+        self.take_in();
+        let animation = &self.animation;
+        shelves(&mut self.meshes).all(|(mesh, shelf, _)| keys(&animation.keys_at(mesh, time)).iter().all(|&key| shelf.is_settled(key)))
+    }
+
+    /// Takes in what the thread has done so far.
+    fn take_in(&mut self) {
+        let Some(loader) = &self.loader else { return };
+        while let Some(reply) = loader.poll() {
+            self.grown += settle(&mut self.meshes, &mut self.animation, reply, false);
+        }
     }
 
     /// Builds the grid again from nothing, to measure.
@@ -260,6 +283,7 @@ impl Player {
         while let Some(reply) = loader.poll() {
             stats.grown += settle(meshes, animation, reply, false);
         }
+        stats.grown += std::mem::take(&mut self.grown);
         for (mesh, _, next) in shelves(meshes) {
             *next = animation.keys_at(mesh, time);
         }

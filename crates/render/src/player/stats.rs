@@ -29,6 +29,8 @@ pub struct SeekStats {
     pub deform_steps: Vec<StepTime>,
     /// The last build of the grid: this seek's where `rebuilt`, else an earlier one's.
     pub build: BuildStats,
+    /// Of the first seek: the build over the scene at time 0, by which the player was made.
+    pub first_build: Option<BuildStats>,
     /// Buffers that were made anew because they had become too small: 0 once the largest key-frame was seen.
     pub grown: u32,
     /// What was odd about the files, one sentence each.
@@ -49,6 +51,7 @@ impl SeekStats {
             deform_ms: 0.0,
             deform_steps: Vec::new(),
             build: build.clone(),
+            first_build: None,
             grown: 0,
             warnings: Vec::new(),
         }

@@ -45,6 +45,8 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
 
     let session = Session::open(&animate.device, &animate.grid, animation, started)?;
     let common = picture::metadata(&animate.source, session.context.device_info(), &settings);
+    // Before there is any file that would be left behind.
+    let deferred = interrupt.defer();
     let writer = Writer::new(&animate, shown, movie_rate, &common)?;
     let missing: Vec<u64> = frames.iter().copied().filter(|frame| writer.wants(*frame)).collect();
     let bar = progress::frames(animate.reports.progress, missing.len() as u64, "rendering");
@@ -52,7 +54,8 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
     let mut play = Play { animate: &animate, session, settings, common, rate, bar, interrupt, warned: false };
     let (sender, receiver) = sync_channel(WAITING);
     let begun = Instant::now();
-    let (rendered, written) = interrupt.deferred(|| together(|| play.render(&missing, sender), || writer.run(receiver)));
+    let (rendered, written) = together(|| play.render(&missing, sender), || writer.run(receiver));
+    drop(deferred);
     let Play { session, settings, bar, .. } = play;
     bar.finish_and_clear();
 
@@ -72,7 +75,7 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
     }
     if ended? == Ended::Interrupted {
         tracing::warn!("interrupted: {} of {} frames are done", written.lines.len(), missing.len());
-        return Ok(Exit::Interrupted);
+        return Ok(interrupt.exit());
     }
     for name in &summary.outputs {
         if animate.named {
@@ -189,7 +192,7 @@ impl Play<'_> {
         let mut warned = self.warned;
         let picture = renderer.render(player.scene(), player.grid(), &camera, settings, &mut |progress| {
             bar.set_position(index as u64 * progress::PARTS + (progress.done * progress::PARTS as f64) as u64);
-            if interrupt.is_pending() && !warned {
+            if interrupt.is_impatient() && !warned {
                 warned = true;
                 bar.suspend(|| tracing::warn!("ending after this frame; Ctrl-C once more ends at once"));
             }

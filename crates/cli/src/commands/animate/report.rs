@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gridwalk_render::image::Rate;
-use gridwalk_render::{Frame, RenderSettings, SeekStats};
+use gridwalk_render::{BuildStats, Frame, RenderSettings, SeekStats};
 use serde::Serialize;
 
 use crate::args::high;
@@ -95,7 +95,15 @@ impl FrameLine {
         let (stats, grid) = (&picture.stats, &sought.build.report);
         let of_device = |ms: f64| timestamps.then_some(ms);
         let steps: f64 = stats.steps.iter().map(|step| step.ms).sum();
-        let build_steps = if sought.rebuilt && timestamps { sought.build.steps.as_slice() } else { &[] };
+        // The first frame has two, if it is not at time 0 or not all of it stands still.
+        let builds: Vec<&BuildStats> = sought.first_build.iter().chain(sought.rebuilt.then_some(&sought.build)).collect();
+        let mut build_steps: Vec<Step> = Vec::new();
+        for step in builds.iter().flat_map(|build| &build.steps).filter(|_| timestamps) {
+            match build_steps.iter_mut().find(|known| known.name == step.name) {
+                Some(known) => known.ms += step.ms,
+                None => build_steps.push(Step { name: step.name.to_owned(), kind: step.kind, ms: step.ms }),
+            }
+        }
         FrameLine {
             header: Header::new("animate.frame"),
             frame,
@@ -103,7 +111,7 @@ impl FrameLine {
             outputs: Vec::new(),
             triangles: grid.triangles.into(),
             dropped: grid.dropped.into(),
-            rebuilt: sought.rebuilt,
+            rebuilt: !builds.is_empty(),
             resolution: grid.resolution,
             density: grid.density,
             pairs: grid.pairs.into(),
@@ -118,16 +126,23 @@ impl FrameLine {
                 hidden_ms: sought.hidden_ms,
                 wait_ms: sought.wait_ms,
                 deform_ms: of_device(sought.deform_ms),
-                rebuild_ms: of_device(if sought.rebuilt { sought.build.ms } else { 0.0 }),
+                rebuild_ms: of_device(builds.iter().map(|build| build.ms).sum()),
                 trace_ms: of_device(stats.trace_ms),
                 shade_ms: of_device(steps - stats.trace_ms),
                 readback_ms: stats.readback_ms,
                 encode_ms: 0.0,
                 frame_ms: 0.0,
             },
-            build_steps: build_steps.iter().map(|step| Step { name: step.name.to_owned(), kind: step.kind, ms: step.ms }).collect(),
+            build_steps,
             heatmap: None,
         }
+    }
+}
+
+impl FrameLine {
+    /// Leaves out what only the frame's own line tells: a run may have a million of them.
+    pub fn condensed(self) -> FrameLine {
+        FrameLine { outputs: Vec::new(), build_steps: Vec::new(), heatmap: None, ..self }
     }
 }
 

@@ -83,7 +83,7 @@ impl<'a> Writer<'a> {
         let mut written = Written { lines: Vec::new(), outputs: Vec::new(), result: Ok(()) };
         for job in frames {
             match self.write(job) {
-                Ok(line) => written.lines.push(line),
+                Ok(line) => written.lines.push(line.condensed()),
                 Err(failure) => {
                     written.result = Err(failure);
                     return written;
