@@ -100,8 +100,16 @@ pub struct Growth {
     pub least: u32,
 
     /// Triangles to end with
-    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(100..=50_000_000))]
+    #[arg(long, default_value_t = 10_000_000, value_parser = clap::value_parser!(u32).range(100..=50_000_000))]
     pub most: u32,
+
+    /// Also draw how each figure grows, on logarithmic scales, into an SVG file
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+
+    /// Measure these alone [default: rebuild, camera, diffuse]
+    #[arg(long, value_delimiter = ',', value_name = "WHAT")]
+    pub only: Vec<Part>,
 
     /// Runs of each size after the warm-up
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
-use bytemuck::{Zeroable, bytes_of};
+use bytemuck::Zeroable;
 use gridwalk::ash::khr::acceleration_structure;
 use gridwalk::ash::vk;
 use gridwalk::{Geometry, Hit};
@@ -13,6 +13,7 @@ use gridwalk_render::{Buffer, BufferDesc, BufferKind, Context};
 
 use crate::contender::{Answers, Contender, Query, Set, Tree};
 use crate::kernels::RAY_QUERY;
+use crate::pipeline::Pipeline;
 use crate::push::RayQuery;
 use crate::stopwatch::Stopwatch;
 
@@ -30,9 +31,8 @@ const PROBES: usize = 256;
 pub struct Driver {
     context: Context,
     functions: acceleration_structure::Device,
-    layout: vk::PipelineLayout,
     /// For closest and for any hits.
-    pipelines: [vk::Pipeline; 2],
+    pipelines: [Pipeline; 2],
     stopwatch: Stopwatch,
     scratch_alignment: u64,
 }
@@ -50,62 +50,13 @@ impl Driver {
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut limits);
         // SAFETY: the physical device is of this instance, and has the extension, so that it knows the struct.
         unsafe { context.instance().get_physical_device_properties2(context.physical_device(), &mut properties) };
-        // From here on `driver` destroys what was made.
-        let mut driver = Driver {
+        Ok(Some(Driver {
             context: context.clone(),
             functions: acceleration_structure::Device::new(context.instance(), context.device()),
-            layout: vk::PipelineLayout::null(),
-            pipelines: [vk::Pipeline::null(); 2],
+            pipelines: [Pipeline::new(context, &RAY_QUERY, &[0])?, Pipeline::new(context, &RAY_QUERY, &[1])?],
             stopwatch: Stopwatch::new(context)?,
             scratch_alignment: u64::from(limits.min_acceleration_structure_scratch_offset_alignment).max(1),
-        };
-        driver.make_pipelines()?;
-        Ok(Some(driver))
-    }
-
-    fn make_pipelines(&mut self) -> Result<()> {
-        let device = self.context.device();
-        let range = vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(RAY_QUERY.push_constant_size);
-        let entry = vk::SpecializationMapEntry { constant_id: 1, offset: 0, size: 4 };
-        // SAFETY: the device lives and has ray queries enabled; every info is complete and outlives its call; the SPIR-V is the kernel's, with
-        // an entry point `main`, no descriptor sets, and push constants and the specialization constant as reflection found them.
-        unsafe {
-            let ranges = [range];
-            self.layout = device.create_pipeline_layout(&vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&ranges), None)?;
-            let module = device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(RAY_QUERY.spirv), None)?;
-            for (pipeline, any) in self.pipelines.iter_mut().zip([0_u32, 1]) {
-                let (entries, data) = ([entry], any.to_ne_bytes());
-                let constants = vk::SpecializationInfo::default().map_entries(&entries).data(&data);
-                let stage = vk::PipelineShaderStageCreateInfo::default()
-                    .stage(vk::ShaderStageFlags::COMPUTE)
-                    .module(module)
-                    .name(c"main")
-                    .specialization_info(&constants);
-                let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
-                match device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) {
-                    Ok(made) => *pipeline = made.first().copied().unwrap_or_default(),
-                    Err((_, error)) => {
-                        device.destroy_shader_module(module, None);
-                        return Err(error.into());
-                    }
-                }
-            }
-            device.destroy_shader_module(module, None);
-        }
-        Ok(())
-    }
-}
-
-impl Drop for Driver {
-    fn drop(&mut self) {
-        let device = self.context.device();
-        // SAFETY: every submission was waited for; null handles may be destroyed.
-        unsafe {
-            for pipeline in self.pipelines {
-                device.destroy_pipeline(pipeline, None);
-            }
-            device.destroy_pipeline_layout(self.layout, None);
-        }
+        }))
     }
 }
 
@@ -270,8 +221,7 @@ impl DriverRival {
     /// Traces one of `step` rays; returns the milliseconds.
     fn run(&self, batch: &Batch, step: usize) -> Result<f64> {
         let structure = self.pair.as_ref().context("no structure was prepared")?.instances.address;
-        let device = self.driver.context.device();
-        let pipeline = self.driver.pipelines[usize::from(batch.query == Query::Any)];
+        let pipeline = &self.driver.pipelines[usize::from(batch.query == Query::Any)];
         let answers = u32::try_from(batch.count.div_ceil(step)).context("too many rays")?;
         let stride = u32::try_from(step).context("too many rays")?;
         let most = self.driver.context.rays_per_submission();
@@ -281,13 +231,9 @@ impl DriverRival {
             let (rays, hits) = (batch.rays.address(), batch.hits.address());
             let push = RayQuery { structure, rays, hits, first, count, stride, ..RayQuery::zeroed() };
             ms += self.driver.stopwatch.time("ray query", |cmd| {
-                // SAFETY: the command buffer is recording; pipeline and layout are of this device; the buffers hold as many rays, and have
-                // room for as many answers; the structure was built by a submission that was waited for.
-                unsafe {
-                    device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline);
-                    device.cmd_push_constants(cmd, self.driver.layout, vk::ShaderStageFlags::COMPUTE, 0, bytes_of(&push));
-                    device.cmd_dispatch(cmd, count.div_ceil(RAY_QUERY.local_size[0]), 1, 1);
-                }
+                // SAFETY: the command buffer is recording; the buffers hold as many rays, and have room for as many answers; the structure was
+                // built by a submission that was waited for.
+                unsafe { pipeline.record(cmd, &push, count) }
             })?;
         }
         Ok(ms)

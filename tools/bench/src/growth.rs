@@ -2,8 +2,8 @@
 
 use clap::Parser as _;
 
-use crate::arguments::{Arguments, Growth};
-use crate::report::{Comparison, Report, SceneReport};
+use crate::arguments::{Arguments, Growth, Part};
+use crate::report::{Report, SceneReport};
 use crate::table::{columns, head};
 
 /// Sizes a tenfold.
@@ -16,7 +16,11 @@ impl Growth {
         let steps = ((most / least).log10() * STEPS_EACH_DECADE).round();
         let size = |step: f64| if steps > 0.0 { least * (most / least).powf(step / steps) } else { least };
         let scenes = (0..=steps as u32).map(|step| format!("{}:{:.0}", self.shape, size(step.into()))).collect();
-        Arguments { scenes, common: self.common.clone(), runs: self.runs, ..Arguments::parse_from(["growth"]) }
+        let only = match self.only.is_empty() {
+            true => vec![Part::Rebuild, Part::Camera, Part::Diffuse],
+            false => self.only.clone(),
+        };
+        Arguments { scenes, common: self.common.clone(), runs: self.runs, only, ..Arguments::parse_from(["growth"]) }
     }
 }
 
@@ -34,31 +38,57 @@ fn slope(points: &[(f64, f64)]) -> Option<f64> {
     (logarithms.len() > 1 && square > 0.0).then(|| both / square)
 }
 
+/// A figure over the numbers of triangles.
+pub struct Series {
+    /// What it is, with its unit.
+    pub name: String,
+    /// Who, ours first, and number of triangles and value at each size.
+    pub lines: Vec<(String, Vec<(f64, f64)>)>,
+}
+
+/// What grows: rebuilds and frames, rays of each kind (one of them, as there are more or fewer with the shape), memory while building.
+pub fn series(report: &Report) -> Vec<Series> {
+    let figures = report.scenes.first().map_or(Vec::new(), |scene| scene.figures().map(|(name, _)| name).collect());
+    let mut all: Vec<Series> = figures.iter().map(|figure| times(report, figure)).collect();
+    all.push(line_up(report, "memory while building, bytes".to_owned(), &|scene, rival| match rival {
+        None => Some((scene.grid_bytes + scene.scratch_bytes) as f64),
+        Some(rival) => Some(scene.rebuilt_bytes.iter().find(|bytes| bytes.rival == rival)?.bytes as f64),
+    }));
+    all
+}
+
+fn times(report: &Report, figure: &str) -> Series {
+    let rays = |scene: &SceneReport| scene.rays.iter().find(|rays| rays.kind == figure).map(|rays| rays.rays as f64);
+    let of_rays = report.scenes.iter().any(|scene| rays(scene).is_some());
+    let name = if of_rays { format!("{figure} ray, ns") } else { format!("{figure}, ms") };
+    line_up(report, name, &|scene, rival| {
+        let (_, comparison) = scene.figures().find(|(name, _)| *name == figure)?;
+        let ms = match rival {
+            None => comparison.ours.median_ms,
+            Some(rival) => comparison.against(rival)?.times.median_ms,
+        };
+        Some(rays(scene).map_or(ms, |rays| ms * 1e6 / rays))
+    })
+}
+
+fn line_up(report: &Report, name: String, value: &dyn Fn(&SceneReport, Option<&str>) -> Option<f64>) -> Series {
+    let line = |rival: Option<&str>| {
+        let point = |scene: &SceneReport| Some((f64::from(scene.triangles), value(scene, rival)?));
+        report.scenes.iter().filter_map(point).collect::<Vec<_>>()
+    };
+    let rivals = report.setup.rivals.iter().map(|rival| (rival.name.clone(), line(Some(&rival.name))));
+    Series { name, lines: std::iter::once(("gridwalk".to_owned(), line(None))).chain(rivals).collect() }
+}
+
 /// A row for each figure: the exponents of ours and of the rivals'.
 pub fn slopes(report: &Report) -> String {
-    let fit = |value: &dyn Fn(&SceneReport) -> Option<f64>| {
-        let points: Vec<(f64, f64)> = report.scenes.iter().filter_map(|scene| Some((f64::from(scene.triangles), value(scene)?))).collect();
-        slope(&points).map_or_else(|| "-".to_owned(), |slope| format!("{slope:.2}"))
-    };
-    let rivals = || report.setup.rivals.iter().map(|rival| rival.name.as_str());
     let mut first = head(&["grows as triangles to the power of", "ours"]);
-    first.extend(rivals().map(str::to_owned));
+    first.extend(report.setup.rivals.iter().map(|rival| rival.name.clone()));
     let mut rows = vec![first];
-    let figures = report.scenes.first().map_or(Vec::new(), |scene| scene.figures().map(|(name, _)| name).collect());
-    for name in figures {
-        // Of a ray: shadow and reflection rays are more or fewer with the shape.
-        let time = |scene: &SceneReport, of: &dyn Fn(&Comparison) -> Option<f64>| {
-            let rays = scene.rays.iter().find(|rays| rays.kind == name).map_or(1.0, |rays| rays.rays as f64);
-            let (_, comparison) = scene.figures().find(|(other, _)| *other == name)?;
-            Some(of(comparison)? / rays)
-        };
-        let is_rays = report.scenes.iter().any(|scene| scene.rays.iter().any(|rays| rays.kind == name));
-        let mut row = vec![if is_rays { format!("{name} ray") } else { name.to_owned() }];
-        row.push(fit(&|scene| time(scene, &|comparison| Some(comparison.ours.median_ms))));
-        row.extend(rivals().map(|rival| fit(&|scene| time(scene, &|comparison| Some(comparison.against(rival)?.times.median_ms)))));
-        rows.push(row);
-    }
-    rows.push(vec!["memory".to_owned(), fit(&|scene| Some((scene.grid_bytes + scene.scratch_bytes) as f64))]);
+    rows.extend(series(report).into_iter().map(|series| {
+        let exponents = series.lines.iter().map(|(_, points)| slope(points).map_or_else(|| "-".to_owned(), |slope| format!("{slope:.2}")));
+        std::iter::once(series.name.clone()).chain(exponents).collect()
+    }));
     format!("\n{}", columns(&rows))
 }
 

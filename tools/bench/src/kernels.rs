@@ -23,6 +23,18 @@ macro_rules! spirv {
     }};
 }
 
+/// Kernel `copy`, from `tools/bench/shaders/copy.comp`.
+pub static COPY: Kernel = Kernel {
+    name: "copy",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/copy.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 24,
+    accesses: &[("from", Access::Read), ("to", Access::Write)],
+    spec_constants: &[],
+};
+
 /// Kernel `ray_query`, from `tools/bench/shaders/ray_query.comp`.
 pub static RAY_QUERY: Kernel = Kernel {
     name: "ray_query",
@@ -36,7 +48,7 @@ pub static RAY_QUERY: Kernel = Kernel {
 };
 
 /// Every kernel of this crate, in order of name.
-pub static ALL: &[&Kernel] = &[&RAY_QUERY];
+pub static ALL: &[&Kernel] = &[&COPY, &RAY_QUERY];
 
 /// Bytes of a field, found by a function that takes it.
 const fn size<T, F>(_: fn(&T) -> &F) -> usize {
@@ -44,6 +56,16 @@ const fn size<T, F>(_: fn(&T) -> &F) -> usize {
 }
 
 // The host's structures lie in memory as the kernels read them.
+const _: () = {
+    use crate::push::Copy as Host;
+    assert!(core::mem::offset_of!(Host, from) == 0);
+    assert!(size(|host: &Host| &host.from) == 8);
+    assert!(core::mem::offset_of!(Host, to) == 8);
+    assert!(size(|host: &Host| &host.to) == 8);
+    assert!(core::mem::offset_of!(Host, count) == 16);
+    assert!(size(|host: &Host| &host.count) == 4);
+    assert!(size_of::<Host>() == 24);
+};
 const _: () = {
     use crate::push::RayQuery as Host;
     assert!(core::mem::offset_of!(Host, structure) == 0);

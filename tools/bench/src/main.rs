@@ -6,6 +6,8 @@ mod arguments;
 mod bvh;
 mod compare;
 mod contender;
+#[allow(unsafe_code, reason = "records commands")]
+mod counters;
 #[allow(unsafe_code, reason = "calls Vulkan's own ray tracing")]
 mod driver;
 mod dynamic;
@@ -14,11 +16,13 @@ mod dynamic_report;
 mod embree;
 mod growth;
 mod host;
-#[allow(dead_code, reason = "generated: one kernel is taken by name")]
+#[allow(dead_code, reason = "generated: kernels are taken by name")]
 mod kernels;
 mod measure;
 mod moving;
 mod ours;
+#[allow(unsafe_code, reason = "makes pipelines")]
+mod pipeline;
 mod plot;
 mod push;
 mod rays;
@@ -31,6 +35,7 @@ mod scenes;
 mod stopwatch;
 mod surface;
 mod table;
+mod traffic;
 mod vector;
 
 use std::path::Path;
@@ -80,6 +85,7 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
         }
         Some(Mode::Growth(growth)) => {
             let report = run(&growth.sizes())?;
+            draw(growth.plot.as_deref(), || Some(plot::growth(&report.setup, &growth::series(&report))))?;
             write(common, &report, &(report.table(None) + &growth::slopes(&report)))?;
         }
         None => {
@@ -90,14 +96,18 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
             if let Some(old) = &old {
                 table += &compare::changes(old, &report);
             }
-            if let Some(path) = &arguments.plot {
-                let picture = plot::bars(&report).context("nothing to plot: no rival is there")?;
-                std::fs::write(path, picture).with_context(|| format!("{}: cannot be written", path.display()))?;
-            }
+            draw(arguments.plot.as_deref(), || plot::bars(&report))?;
             write(common, &report, &table)?;
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Writes a picture, if one is asked for.
+fn draw(path: Option<&Path>, picture: impl FnOnce() -> Option<String>) -> Result<()> {
+    let Some(path) = path else { return Ok(()) };
+    let picture = picture().context("nothing to plot: no rival is there")?;
+    std::fs::write(path, picture).with_context(|| format!("{}: cannot be written", path.display()))
 }
 
 fn read_report(path: &Path) -> Result<Report> {
@@ -163,7 +173,9 @@ fn run(arguments: &Arguments) -> Result<Report> {
     let builder = GridBuilder::new(&context)?;
     let pipelines_ms = begin.elapsed().as_secs_f64() * 1e3;
     let (record_build_us, record_trace_us) = record::measure(&context, builder.tracer()?)?;
-    let mut report = Report { setup, pipelines_ms, record_build_us, record_trace_us, scenes: Vec::new(), means: Vec::new() };
+    let bandwidth_gb_s = counters::bandwidth(&context)?;
+    let (scenes, means) = (Vec::new(), Vec::new());
+    let mut report = Report { setup, pipelines_ms, record_build_us, record_trace_us, bandwidth_gb_s, scenes, means };
     let folders = scenes::folders(&common.folder);
     for spec in scenes::expand(&arguments.scenes) {
         eprintln!("gridwalk-bench: {spec}");
@@ -246,6 +258,43 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn growth_has_slopes_and_a_picture() {
+        let arguments = Arguments::try_parse_from(
+            ["gridwalk-bench", "growth", "sphere", "--least", "100", "--most", "1000", "--size", "16", "--runs", "1"].iter(),
+        );
+        let Some(Mode::Growth(growth)) = arguments.unwrap().mode else { panic!("not growth") };
+        let report = run(&growth.sizes()).unwrap();
+        let series = growth::series(&report);
+        assert_eq!(series.len(), 4);
+        assert!(series.iter().all(|series| series.lines.len() == 1 + report.setup.rivals.len() && series.lines[0].1.len() == 3));
+        let slopes = growth::slopes(&report);
+        assert!(["rebuild, ms", "camera ray, ns", "diffuse ray, ns", "memory"].iter().all(|name| slopes.contains(name)), "{slopes}");
+        let picture = plot::growth(&report.setup, &series);
+        assert!(picture.starts_with("<svg") && picture.matches(">gridwalk<").count() == 4, "{picture}");
+    }
+
+    #[test]
+    fn wrong_words_are_refused() {
+        for (words, said) in [
+            (&["--only", "rebuilds"][..], "rebuild"),
+            (&["--rivals", "embre"], "embree"),
+            (&["--runs", "0"], "1..=1000"),
+            (&["--size", "7"], "8..=8192"),
+            (&["--overlap", "sphere"], "exact"),
+            (&["growth", "--most", "60000000"], "50000000"),
+        ] {
+            let error = Arguments::try_parse_from(["gridwalk-bench"].iter().chain(words)).unwrap_err().to_string();
+            assert!(error.contains(said), "{words:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_rival_that_is_named_must_be_there() {
+        let error = run(&arguments(&["sphere:200", "--rivals", "embree", "--embree", "nowhere/libembree4.so"])).err().unwrap();
+        assert!(format!("{error:#}").contains("nowhere/libembree4.so"), "{error:#}");
     }
 
     #[test]

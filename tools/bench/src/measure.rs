@@ -9,6 +9,7 @@ use gridwalk_scene::{Camera, Mesh};
 
 use crate::arguments::{Arguments, Common, Overlap, Part};
 use crate::contender::{Answers, Contender, Query, Set, Tree, Turn, times, turns};
+use crate::counters::walks;
 use crate::ours::Ours;
 use crate::rays::{camera_rays, diffuse_rays};
 use crate::report::{
@@ -18,6 +19,7 @@ use crate::report::{
 use crate::rivals::Rivals;
 use crate::scenes::Loaded;
 use crate::surface::{Surface, Traced};
+use crate::traffic::Size;
 
 /// How a build is to be made.
 pub fn settings(arguments: &Common) -> BuildSettings {
@@ -122,6 +124,15 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
     let report = &stats.report;
     let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs: report.pair_total };
     let fitted = field.ours.grid().tracer()?.build_sizes(&fitted).map_err(gridwalk_render::Error::from)?;
+    let size = Size {
+        triangles: report.triangles.into(),
+        cells: report.cells.into(),
+        cells_in_use: report.cells_in_use.into(),
+        pairs: report.pair_total.into(),
+    };
+    for step in &mut steps {
+        step.bytes = size.step(&step.name, step.count);
+    }
     let camera = &loaded.camera;
     Ok(SceneReport {
         scene: loaded.name.clone(),
@@ -313,6 +324,7 @@ fn trace(field: &mut Field<'_>, runs: u32, set: &Arc<Set>, mut alone: Option<Our
         hits: count(Hit::is_hit),
         unfinished: count(|hit| hit.triangle == UNFINISHED),
         mrays: time.ours.mrays(rays),
+        walk: (set.query == Query::Closest).then(|| walks(field.ours.grid(), set)).transpose()?,
         alone: alone.map(|runs| Against::of(&time.ours, &RivalRuns { name: "the object alone", runs: &runs, is_sampled: false }, is_cpu)),
         time,
         differences,

@@ -1,8 +1,10 @@
-//! The ratios as a picture (SVG): a bar for each figure, on a logarithmic scale, and the line at which both are equally fast.
+//! Pictures (SVG). The ratios: a bar for each figure, on a logarithmic scale, and the line at which both are equally fast. How figures grow: a
+//! line for each contender, on logarithmic scales.
 
 use std::fmt::Write as _;
 
-use crate::report::{Comparison, Report, Rival};
+use crate::growth::Series;
+use crate::report::{Comparison, Report, Rival, Setup};
 use crate::table::number;
 
 const BAR: f64 = 14.0;
@@ -25,6 +27,13 @@ const COLOURS: [(&str, &str); 8] = [
 struct Picture(String);
 
 impl Picture {
+    /// With the device in its first line.
+    fn new(setup: &Setup) -> Picture {
+        let mut picture = Picture(String::new());
+        picture.text(8.0, 18.0, "start", &format!("{} ({})", setup.device, setup.driver));
+        picture
+    }
+
     fn text(&mut self, x: f64, y: f64, anchor: &str, words: &str) {
         let words = words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
         // Writing to a string cannot fail.
@@ -76,8 +85,7 @@ pub fn bars(report: &Report) -> Option<String> {
     let last = all().fold(1.0, f64::max).log10().ceil().max(first + 1.0);
     let x = |ratio: f64| LABELS + (ratio.log10() - first) * DECADE;
 
-    let mut picture = Picture(String::new());
-    picture.text(8.0, 18.0, "start", &format!("{} ({})", report.setup.device, report.setup.driver));
+    let mut picture = Picture::new(&report.setup);
     let mut y = 18.0;
     for (rival, scenes) in &rivals {
         y += 24.0;
@@ -103,4 +111,77 @@ pub fn bars(report: &Report) -> Option<String> {
         }
     }
     Some(picture.finish(x(10_f64.powf(last)) + 60.0, y + 24.0))
+}
+
+/// Side of a panel's plot, and the space around it.
+const PANEL: f64 = 230.0;
+const LEFT: f64 = 70.0;
+const TOP: f64 = 60.0;
+const RIGHT: f64 = 90.0;
+/// Panels beside one another.
+const ACROSS: usize = 3;
+
+/// Whole decades around numbers: exponents of the first and the last.
+fn decades(numbers: impl Iterator<Item = f64>) -> Option<(i32, i32)> {
+    let (least, most) = numbers.filter(|number| *number > 0.0).fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
+    let (first, last) = (least.log10().floor() as i32, most.log10().ceil() as i32);
+    (most > 0.0).then(|| (first, last.max(first + 1)))
+}
+
+/// A power of ten as people write it.
+fn power(exponent: i32) -> String {
+    match exponent {
+        -3..=3 => 10_f64.powi(exponent).to_string(),
+        _ => format!("1e{exponent}"),
+    }
+}
+
+/// A panel for each figure that grows.
+pub fn growth(setup: &Setup, all: &[Series]) -> String {
+    let mut picture = Picture::new(setup);
+    for (place, series) in all.iter().enumerate() {
+        let points = || series.lines.iter().flat_map(|(_, points)| points);
+        let (Some(across), Some(upwards)) = (decades(points().map(|point| point.0)), decades(points().map(|point| point.1))) else {
+            continue;
+        };
+        let corner = [LEFT + (place % ACROSS) as f64 * (LEFT + PANEL + RIGHT), TOP + (place / ACROSS) as f64 * (TOP + PANEL)];
+        let part = |value: f64, (first, last): (i32, i32)| (value.log10() - f64::from(first)) / f64::from(last - first) * PANEL;
+        let at = |point: &(f64, f64)| [corner[0] + part(point.0, across), corner[1] + PANEL - part(point.1, upwards)];
+        picture.text(corner[0], corner[1] - 10.0, "start", &series.name);
+        for exponent in across.0..=across.1 {
+            let x = corner[0] + part(10_f64.powi(exponent), across);
+            picture.line([x, corner[1]], [x, corner[1] + PANEL], "#dddddd");
+            picture.text(x, corner[1] + PANEL + 14.0, "middle", &power(exponent));
+        }
+        for exponent in upwards.0..=upwards.1 {
+            let y = corner[1] + PANEL - part(10_f64.powi(exponent), upwards);
+            picture.line([corner[0], y], [corner[0] + PANEL, y], "#dddddd");
+            picture.text(corner[0] - 4.0, y + 4.0, "end", &power(exponent));
+        }
+        for (line, (who, points)) in series.lines.iter().enumerate() {
+            let (_, colour) = COLOURS[line % COLOURS.len()];
+            for pair in points.windows(2) {
+                picture.line(at(&pair[0]), at(&pair[1]), colour);
+            }
+            if let Some(last) = points.last() {
+                let [x, y] = at(last);
+                picture.text(x + 4.0, y + 4.0, "start", who);
+            }
+        }
+    }
+    let rows = all.len().div_ceil(ACROSS);
+    picture.finish(ACROSS.min(all.len()) as f64 * (LEFT + PANEL + RIGHT), rows as f64 * (TOP + PANEL) + TOP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_are_whole_decades() {
+        assert_eq!(decades([20.0, 3000.0, 0.0].into_iter()), Some((1, 4)));
+        assert_eq!(decades([1.0, 1.0].into_iter()), Some((0, 1)));
+        assert_eq!(decades([0.0].into_iter()), None);
+        assert_eq!([-2, 0, 3, 6].map(power), ["0.01", "1", "1000", "1e6"]);
+    }
 }

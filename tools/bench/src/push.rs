@@ -14,3 +14,13 @@ pub struct RayQuery {
     pub stride: u32,
     pub reserved: u32,
 }
+
+/// Of kernel `copy`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct Copy {
+    pub from: u64,
+    pub to: u64,
+    pub count: u32,
+    pub reserved: u32,
+}

@@ -38,6 +38,8 @@ pub struct Report {
     pub record_build_us: f64,
     /// Likewise a trace of closest hits.
     pub record_trace_us: f64,
+    /// Gigabytes a second that a kernel which only copies reads and writes on the device.
+    pub bandwidth_gb_s: f64,
     /// One entry a scene.
     pub scenes: Vec<SceneReport>,
     /// Geometric means of the ratios over scenes.
@@ -137,13 +139,26 @@ pub struct Step {
     pub count: u32,
     /// Median of the milliseconds of all launches.
     pub ms: f64,
+    /// Bytes that all launches have to move, as far as that is reckoned: every array once.
+    pub bytes: Option<u64>,
 }
 
 impl Step {
     /// A step as it was measured once.
     pub fn of(step: &gridwalk_render::StepTime) -> Step {
-        Step { name: step.name.to_owned(), kind: step.kind.to_owned(), count: step.count, ms: step.ms }
+        Step { name: step.name.to_owned(), kind: step.kind.to_owned(), count: step.count, ms: step.ms, bytes: None }
     }
+}
+
+/// What a ray's walk has done: means over all rays of a set.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WalkCounts {
+    /// Blocks of cells that were visited.
+    pub steps: f64,
+    /// Triangles that were tested.
+    pub tests: f64,
+    /// Cells in use that were visited.
+    pub cells: f64,
 }
 
 /// Frames: a rebuild from nothing, then rays through what it made, of rivals too.
@@ -207,6 +222,8 @@ pub struct RayReport {
     pub unfinished: u64,
     /// Our median in millions of rays a second.
     pub mrays: f64,
+    /// What the walks of closest hits have done; none of any hits, which are not counted.
+    pub walk: Option<WalkCounts>,
     /// Times.
     pub time: Comparison,
     /// How the hits differ from those of each rival.

@@ -75,16 +75,17 @@ impl Report {
             self.setup.size, self.setup.runs
         );
         text += &format!(
-            "pipelines made in {:.0} ms; recorded in {:.1} us a build, {:.1} us a trace\n",
-            self.pipelines_ms, self.record_build_us, self.record_trace_us
+            "pipelines made in {:.0} ms; recorded in {:.1} us a build, {:.1} us a trace; a kernel copies at {:.1} GB/s, read and written\n",
+            self.pipelines_ms, self.record_build_us, self.record_trace_us, self.bandwidth_gb_s
         );
         block(&mut text, &self.grids());
         block(&mut text, &self.memory());
         block(&mut text, &self.times());
         block(&mut text, &self.frames());
+        block(&mut text, &self.walks());
         block(&mut text, &self.hits());
         for scene in &self.scenes {
-            block(&mut text, &scene.steps(filter));
+            block(&mut text, &scene.steps(filter, self.bandwidth_gb_s));
         }
         block(&mut text, &self.mean_rows());
         text
@@ -172,6 +173,19 @@ impl Report {
         rows
     }
 
+    fn walks(&self) -> Vec<Vec<String>> {
+        let mut rows = vec![head(&["scene", "a ray", "steps", "cells in use", "tests", "bytes asked for", "GB/s", "of a copy's"])];
+        for (scene, rays) in self.scenes.iter().flat_map(|scene| scene.rays.iter().map(move |rays| (scene, rays))) {
+            let Some(walk) = &rays.walk else { continue };
+            let rate = walk.bytes() * rays.mrays * 1e-3;
+            let mut row = vec![scene.scene.clone(), rays.kind.clone()];
+            row.extend([walk.steps, walk.cells, walk.tests].map(|count| number(Some(count))));
+            row.extend([format!("{:.0}", walk.bytes()), number(Some(rate)), share(rate, self.bandwidth_gb_s)]);
+            rows.push(row);
+        }
+        rows
+    }
+
     fn hits(&self) -> Vec<Vec<String>> {
         let mut rows =
             vec![head(&["scene", "rays", "", "hits", "unfinished", "against", "compared", "other triangle", "nearer", "farther"])];
@@ -206,14 +220,23 @@ fn against(against: Option<&Against>) -> [String; 4] {
     [of(|a| Some(a.times.median_ms)), of(|a| a.ratio), of(|a| a.best_ratio), of(|a| a.processor_ratio)]
 }
 
+fn share(part: f64, whole: f64) -> String {
+    if whole > 0.0 { format!("{:.1} %", part / whole * 100.0) } else { "-".to_owned() }
+}
+
 impl SceneReport {
-    fn steps(&self, filter: Option<&str>) -> Vec<Vec<String>> {
+    fn steps(&self, filter: Option<&str>, bandwidth_gb_s: f64) -> Vec<Vec<String>> {
         let sum: f64 = self.steps.iter().map(|step| step.ms).sum();
-        let mut rows = vec![head(&[&self.scene, "kind", "launches", "ms", "share"])];
+        let mut rows = vec![head(&[&self.scene, "kind", "launches", "ms", "share", "MB", "GB/s", "of a copy's"])];
         let shown = self.steps.iter().filter(|step| filter.is_none_or(|filter| step.name.contains(filter)));
         rows.extend(shown.map(|step| {
-            let share = format!("{:.1} %", step.ms / sum.max(f64::MIN_POSITIVE) * 100.0);
-            vec![step.name.clone(), step.kind.clone(), step.count.to_string(), format!("{:.3}", step.ms), share]
+            let mut row =
+                vec![step.name.clone(), step.kind.clone(), step.count.to_string(), format!("{:.3}", step.ms), share(step.ms, sum)];
+            if let Some(bytes) = step.bytes.filter(|_| step.ms > 0.0) {
+                let rate = bytes as f64 / step.ms * 1e-6;
+                row.extend([number(Some(bytes as f64 * 1e-6)), number(Some(rate)), share(rate, bandwidth_gb_s)]);
+            }
+            row
         }));
         rows
     }

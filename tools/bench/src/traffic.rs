@@ -1,0 +1,77 @@
+//! How many bytes the steps of a build and the rays of a trace have to move, to be held against what the memory can.
+//!
+//! The estimates count every array that a kernel goes through once, each element at its size, and nothing twice: no header, no partial sums, no
+//! search. A step that moves more than its share of the bandwidth is bound by something else.
+
+use crate::report::WalkCounts;
+
+/// Bytes of a triangle of three indices, of its three vertices, and of it in the grid.
+const INDICES: u64 = 12;
+const VERTICES: u64 = 36;
+const TRIANGLE: u64 = 48;
+/// Bytes of a key, a triangle's number, an offset.
+const WORD: u64 = 4;
+/// Bytes of a cell's range of references.
+const CELL: u64 = 8;
+/// Bytes of a brick, and its cells.
+const BRICK: u64 = 16;
+const CELLS_A_BRICK: u64 = 64;
+/// Bytes of a ray and its hit.
+const RAY: f64 = 48.0;
+
+/// What a build goes through.
+#[derive(Clone, Copy, Debug)]
+pub struct Size {
+    pub triangles: u64,
+    pub cells: u64,
+    pub cells_in_use: u64,
+    /// Pairs that are sorted: those of the triangles' boxes.
+    pub pairs: u64,
+}
+
+impl Size {
+    /// Bytes that a kernel of the build reads and writes in so many launches; none of a kernel that is not known, or that moves next to nothing.
+    pub fn step(&self, kernel: &str, launches: u32) -> Option<u64> {
+        let Size { triangles, cells, cells_in_use, pairs } = *self;
+        let bricks = cells / CELLS_A_BRICK;
+        let launches = u64::from(launches);
+        Some(match kernel {
+            "gather" => triangles * (INDICES + VERTICES + TRIANGLE),
+            "bounds_reduce" => triangles * TRIANGLE,
+            "clear_cells" => cells * CELL,
+            "overlap_count" => triangles * (2 * TRIANGLE + WORD),
+            "overlap_emit" => triangles * (TRIANGLE + WORD) + pairs * 2 * WORD,
+            "scan_reduce" => triangles * WORD,
+            "scan_downsweep" => triangles * 2 * WORD,
+            "sort_histogram" => launches * pairs * WORD,
+            "sort_scatter" => launches * pairs * 4 * WORD,
+            "cell_ranges" => pairs * WORD + cells_in_use * CELL,
+            "brick_reduce" => cells * CELL + bricks * BRICK,
+            "brick_distance_x" | "brick_distance_z" => bricks * (BRICK + WORD),
+            "brick_distance_y" => bricks * 2 * WORD,
+            _ => return None,
+        })
+    }
+}
+
+impl WalkCounts {
+    /// Bytes that a ray asks for, most of which caches answer: a brick a step, the range of each cell in use, a reference and a triangle a test,
+    /// the ray and its hit.
+    pub fn bytes(&self) -> f64 {
+        self.steps * BRICK as f64 + self.cells * CELL as f64 + self.tests * (WORD + TRIANGLE) as f64 + RAY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_large_step_is_known() {
+        let size = Size { triangles: 1000, cells: 8000, cells_in_use: 500, pairs: 3000 };
+        assert_eq!(size.step("gather", 1), Some(96_000));
+        assert_eq!(size.step("sort_scatter", 3), Some(3 * 48_000));
+        assert_eq!(size.step("configure", 1), None);
+        assert_eq!(WalkCounts { steps: 2.0, tests: 1.0, cells: 1.0 }.bytes(), 140.0);
+    }
+}
