@@ -6,6 +6,7 @@ use std::mem::{ManuallyDrop, offset_of};
 use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context as _, Result, bail};
@@ -115,6 +116,28 @@ enum Query {
     Four { intersect: Intersect4, occluded: Intersect4 },
 }
 
+/// Bytes that Embree has asked for: now, and at most since the last mark.
+#[derive(Default)]
+struct Memory {
+    now: AtomicI64,
+    peak: AtomicI64,
+}
+
+type Monitor = unsafe extern "C" fn(Raw, isize, bool) -> bool;
+
+/// Told before memory is taken, and after it is given back, which counts below 0. Always goes on.
+///
+/// # Safety
+/// `memory` is a [`Memory`] that lives as long as the device.
+unsafe extern "C" fn monitor(memory: Raw, bytes: isize, _post: bool) -> bool {
+    // SAFETY: the caller's word.
+    let memory = unsafe { &*memory.cast_const().cast::<Memory>() };
+    let bytes = bytes as i64;
+    let now = memory.now.fetch_add(bytes, Ordering::Relaxed) + bytes;
+    memory.peak.fetch_max(now, Ordering::Relaxed);
+    true
+}
+
 struct Functions {
     release_device: unsafe extern "C" fn(Raw),
     device_error: unsafe extern "C" fn(Raw) -> c_int,
@@ -137,6 +160,8 @@ struct Functions {
 struct Loaded {
     functions: Functions,
     device: Handle,
+    /// Not moved while the device lives, which tells it what it takes.
+    memory: Box<Memory>,
 }
 
 impl Drop for Loaded {
@@ -206,6 +231,7 @@ impl Embree {
             4 => Query::Four { intersect: get(&library, "rtcIntersect1")?, occluded: get(&library, "rtcOccluded1")? },
             other => bail!("{}: Embree {other} is neither 3 nor 4", path.display()),
         };
+        let set_monitor: unsafe extern "C" fn(Raw, Option<Monitor>, Raw) = get(&library, "rtcSetDeviceMemoryMonitorFunction")?;
         let functions = Functions {
             release_device: get(&library, "rtcReleaseDevice")?,
             device_error: get(&library, "rtcGetDeviceError")?,
@@ -224,7 +250,11 @@ impl Embree {
             attach_geometry: get(&library, "rtcAttachGeometry")?,
             query,
         };
-        Ok(Embree { loaded: Arc::new(Loaded { functions, device: Handle(device) }), path, threads })
+        // Owns the device from here on.
+        let loaded = Loaded { functions, device: Handle(device), memory: Box::default() };
+        // SAFETY: a living device, and a `Memory` that lives as long, behind a box that is not moved out of.
+        unsafe { set_monitor(device.as_ptr(), Some(monitor), std::ptr::from_ref(&*loaded.memory).cast_mut().cast()) };
+        Ok(Embree { loaded: Arc::new(loaded), path, threads })
     }
 
     /// Its version.
@@ -310,6 +340,8 @@ impl Rival for Meshed {
             (Tree::Best, Quality::Medium) => (FLAG_NONE, QUALITY_MEDIUM),
             (Tree::Best, Quality::High) => (FLAG_NONE, QUALITY_HIGH),
         };
+        let memory = &self.embree.loaded.memory;
+        memory.peak.store(memory.now.load(Ordering::Relaxed), Ordering::Relaxed);
         let mut scene = self.embree.scene(&self.mesh, flags, quality)?;
         scene.rebuild()?;
         Ok(scene)
@@ -401,8 +433,9 @@ impl HostTree for Scene {
         query.far < 0.0
     }
 
+    /// The most that was taken since the tree was begun, while the device has no other.
     fn bytes(&self) -> Option<u64> {
-        None
+        u64::try_from(self.embree.loaded.memory.peak.load(Ordering::Relaxed)).ok().filter(|bytes| *bytes > 0)
     }
 }
 
@@ -434,6 +467,7 @@ mod tests {
             for tree in [Tree::Fast, Tree::Best] {
                 let mut scene = rival.tree(tree).unwrap();
                 scene.rebuild().unwrap();
+                assert!(scene.bytes().is_some_and(|bytes| bytes < 1 << 24), "{:?}", scene.bytes());
                 assert_eq!(scene.closest(&ray(0.5)), Hit { t: 1.0, u: 0.5, v: 0.25, triangle: 0 });
                 assert_eq!(scene.closest(&ray(2.0)), Hit::MISS);
                 assert_eq!([scene.any(&ray(0.5)), scene.any(&ray(2.0))], [true, false]);

@@ -203,6 +203,7 @@ fn run_dynamic(arguments: &Dynamic) -> Result<dynamic_report::Report> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     fn arguments(words: &[&str]) -> Arguments {
         Arguments::try_parse_from(["gridwalk-bench", "--size", "64", "--runs", "2"].iter().chain(words)).unwrap()
@@ -274,6 +275,55 @@ mod tests {
         assert!(["rebuild, ms", "camera ray, ns", "diffuse ray, ns", "memory"].iter().all(|name| slopes.contains(name)), "{slopes}");
         let picture = plot::growth(&report.setup, &series);
         assert!(picture.starts_with("<svg") && picture.matches(">gridwalk<").count() == 4, "{picture}");
+    }
+
+    /// The names of all fields, at any depth.
+    fn fields(value: &serde_json::Value, found: &mut BTreeSet<String>) {
+        match value {
+            serde_json::Value::Object(object) => object.iter().for_each(|(name, value)| {
+                found.insert(name.clone());
+                fields(value, found);
+            }),
+            serde_json::Value::Array(array) => array.iter().for_each(|value| fields(value, found)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn the_documentation_has_every_field_and_no_other() {
+        let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/bench.md")).unwrap();
+        let (_, table) = text.split_once("## JSON").unwrap();
+        let names = table.lines().filter(|line| line.starts_with("| `")).filter_map(|line| line.split('|').nth(1));
+        let documented: BTreeSet<String> =
+            names.flat_map(|cell| cell.split(',')).map(|name| name.trim().trim_matches('`').to_owned()).collect();
+
+        let mut found = BTreeSet::new();
+        let rival = ["--rivals", "obvhs"];
+        let report = run(&arguments(&[&["stadium:300"][..], &rival].concat())).unwrap();
+        fields(&serde_json::to_value(&report).unwrap(), &mut found);
+        let words = ["gridwalk-bench", "dynamic", "sphere:100", "--size", "16", "--runs", "1", "--frames", "1"];
+        let Some(Mode::Dynamic(dynamic)) = Arguments::try_parse_from(words.iter().chain(&rival)).unwrap().mode else {
+            panic!("not dynamic")
+        };
+        fields(&serde_json::to_value(run_dynamic(&dynamic).unwrap()).unwrap(), &mut found);
+        // Of memory and differences, which may be none.
+        let bytes = report::RivalBytes { rival: String::new(), bytes: 1 };
+        fields(&serde_json::to_value(bytes).unwrap(), &mut found);
+        let example = report::Example { ray: 0, origin: [0.0; 3], direction: [1.0; 3], ours: None, theirs: None };
+        fields(&serde_json::to_value(example).unwrap(), &mut found);
+        assert_eq!(documented, found);
+    }
+
+    #[test]
+    fn a_committed_scene() {
+        let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/teapot/scene.toml");
+        let report = run(&arguments(&[scene, "--only", "rebuild,frame,camera,shadow"])).unwrap();
+        assert!(report.setup.rivals.iter().any(|rival| rival.name == "obvhs"));
+        assert_eq!(report.means.len(), 4 * report.setup.rivals.len());
+        for rays in &report.scenes[0].rays {
+            assert_eq!(rays.differences.len(), report.setup.rivals.len());
+            assert!(rays.differences.iter().all(|difference| difference.nearer + difference.farther <= 4), "{rays:?}");
+        }
     }
 
     #[test]
