@@ -77,11 +77,8 @@ impl Foreign {
             let subset = offered.iter().any(|extension| extension.extension_name_as_c_str() == Ok(khr::portability_subset::NAME));
             let extensions = if subset { vec![khr::portability_subset::NAME.as_ptr()] } else { Vec::new() };
             let mut features = requirements::features();
-            let info = vk::DeviceCreateInfo::default()
-                .queue_create_infos(&queue_info)
-                .enabled_extension_names(&extensions)
-                .push_next(&mut features.vulkan_12)
-                .push_next(&mut features.vulkan_13);
+            let info = vk::DeviceCreateInfo::default().queue_create_infos(&queue_info).enabled_extension_names(&extensions);
+            let info = features.chain(info);
             let device = instance.create_device(physical_device, &info, None).unwrap();
             let queue = Mutex::new(device.get_device_queue(family, 0));
             Foreign { instance, physical_device, device, queue, family, messenger, messages, _entry: entry }
@@ -205,9 +202,15 @@ pub struct Memory<'a> {
 
 impl<'a> Memory<'a> {
     pub fn new(foreign: &'a Foreign, size: u64) -> Memory<'a> {
-        use vk::{BufferUsageFlags as Usage, MemoryPropertyFlags as Property};
-        let (device, host) = (&foreign.device, Property::HOST_VISIBLE | Property::HOST_COHERENT);
+        use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS | Usage::INDIRECT_BUFFER | Usage::TRANSFER_DST;
+        Memory::with_usage(foreign, size, usage)
+    }
+
+    /// With these usage flags and no others.
+    pub fn with_usage(foreign: &'a Foreign, size: u64, usage: vk::BufferUsageFlags) -> Memory<'a> {
+        use vk::MemoryPropertyFlags as Property;
+        let (device, host) = (&foreign.device, Property::HOST_VISIBLE | Property::HOST_COHERENT);
         // SAFETY: the buffer is bound once, to memory as large as it asks for, which stays mapped until it is freed.
         unsafe {
             let buffer = device.create_buffer(&vk::BufferCreateInfo::default().size(size).usage(usage), None).unwrap();

@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use gridwalk::ash::vk;
-use gridwalk::{RayCount, TraceInfo, Tracer, cmd_barrier};
+use gridwalk::{BuildInfo, Cull, GeometryRecord, Input, RayCount, Records, TraceInfo, Tracer, cmd_barrier};
 use gridwalk_tests::foreign::{Foreign, Memory, Placed, Terrain};
 
 /// Rust's heap, with a count for each thread. What a driver or a layer allocates for its command buffers is not Rust's, and not the library's.
@@ -50,8 +50,15 @@ fn recording_allocates_nothing() {
         let rays = placed.terrain.rays.len() as u32;
         let indirect = TraceInfo { count: RayCount::Indirect { count, max: rays }, ..placed.trace };
         let resumed = TraceInfo { resume: true, counters: Some(counters), ..placed.trace };
+        let records = memory.upload(&[GeometryRecord::default(); 3]);
+        let instances = BuildInfo { input: Input::Records(Records { records, count: 3 }), ..placed.build };
+        let masks = memory.region(4 * placed.terrain.rays.len() as u64);
+        let geometries = memory.region(3 * 8 * placed.terrain.rays.len() as u64);
+        let several = memory.region(3 * 16 * placed.terrain.rays.len() as u64);
+        let filtered = TraceInfo { masks: Some(masks), mask: 5, cull: Cull::Back, ..placed.trace };
+        let all = TraceInfo { geometries: Some(geometries), hits: several, resume: true, ..filtered };
         let grid = placed.build.grid.address;
-        let mut counts = Vec::with_capacity(8);
+        let mut counts = Vec::with_capacity(16);
         let commands = foreign.record(|cmd| {
             // SAFETY: the command buffer is dropped without being submitted, while all of it lives.
             unsafe {
@@ -61,6 +68,10 @@ fn recording_allocates_nothing() {
                 counts.push(("closest hit, indirect", allocations(|| tracer.cmd_closest_hit(cmd, grid, &indirect).unwrap())));
                 counts.push(("closest hit, resumed", allocations(|| tracer.cmd_closest_hit(cmd, grid, &resumed).unwrap())));
                 counts.push(("any hit", allocations(|| tracer.cmd_any_hit(cmd, grid, &placed.trace).unwrap())));
+                counts.push(("build of records", allocations(|| tracer.cmd_build(cmd, &instances).unwrap())));
+                counts.push(("any hit, filtered", allocations(|| tracer.cmd_any_hit(cmd, grid, &filtered).unwrap())));
+                counts.push(("count of hits", allocations(|| tracer.cmd_count_hits(cmd, grid, &filtered).unwrap())));
+                counts.push(("nearest hits", allocations(|| tracer.cmd_nearest_hits(cmd, grid, &all, 3).unwrap())));
             }
         });
         drop(commands);

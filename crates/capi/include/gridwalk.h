@@ -781,9 +781,9 @@ const char *gridwalk_slang(void);
  * Looks at a physical device before a device is made of it, and enables the features that the library needs.
  *
  * `features` is null or the first structure of a chain by `pNext`, which you then pass to `vkCreateDevice`. It holds a
- * `VkPhysicalDeviceVulkan12Features` and a `VkPhysicalDeviceVulkan13Features`: the features that the library needs become `VK_TRUE`
- * in them, all others stay as they are. They do so even if the device lacks them. (They are `bufferDeviceAddress` and `synchronization2`:
- * a chain of the older structures for single features serves as well, filled by you.)
+ * `VkPhysicalDeviceVulkan12Features` and a `VkPhysicalDeviceVulkan13Features`, or the structures of single features,
+ * `VkPhysicalDeviceBufferDeviceAddressFeatures` and `VkPhysicalDeviceSynchronization2Features`: the features that the library needs become
+ * `VK_TRUE` in them, all others stay as they are. They do so even if the device lacks them.
  *
  * Returns `GRIDWALK_RESULT_ERROR_UNSUITABLE` if the device cannot serve; then `gridwalk_last_error` names all that it lacks, separated by
  * semicolons.

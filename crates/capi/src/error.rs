@@ -54,6 +54,7 @@ impl Failure {
             Failure::Library(error) => match error {
                 gridwalk::Error::Vulkan { .. } => GridwalkResult::ErrorVulkan,
                 gridwalk::Error::Unsuitable { .. } => GridwalkResult::ErrorUnsuitable,
+                gridwalk::Error::Chain { .. } => GridwalkResult::ErrorStruct,
                 gridwalk::Error::Capacity { .. } => GridwalkResult::ErrorCapacity,
                 gridwalk::Error::DeviceLimit { .. } => GridwalkResult::ErrorDeviceLimit,
                 gridwalk::Error::Region { .. } => GridwalkResult::ErrorRegion,

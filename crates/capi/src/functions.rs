@@ -2,11 +2,10 @@
 
 use std::ffi::{c_char, c_void};
 use std::fmt::Write;
-use std::mem::offset_of;
 
 use gridwalk::ash::vk::{
-    self, AccessFlags2 as VkAccessFlags2, Bool32, CommandBuffer as VkCommandBuffer, DeviceAddress as VkDeviceAddress,
-    Instance as VkInstance, PhysicalDevice as VkPhysicalDevice, PipelineStageFlags2 as VkPipelineStageFlags2, Result as VkResult,
+    self, AccessFlags2 as VkAccessFlags2, CommandBuffer as VkCommandBuffer, DeviceAddress as VkDeviceAddress, Instance as VkInstance,
+    PhysicalDevice as VkPhysicalDevice, PipelineStageFlags2 as VkPipelineStageFlags2, Result as VkResult,
 };
 use gridwalk::{
     Access, BuildInfo, BuildOptions, Capacity, Cull, DeviceDesc, GRIDWALK_GLSL, GRIDWALK_SLANG, Geometry, GeometryRecord, Input, Overlap,
@@ -72,9 +71,9 @@ pub extern "C" fn gridwalk_slang() -> *const c_char {
 /// Looks at a physical device before a device is made of it, and enables the features that the library needs.
 ///
 /// `features` is null or the first structure of a chain by `pNext`, which you then pass to `vkCreateDevice`. It holds a
-/// `VkPhysicalDeviceVulkan12Features` and a `VkPhysicalDeviceVulkan13Features`: the features that the library needs become `VK_TRUE`
-/// in them, all others stay as they are. They do so even if the device lacks them. (They are `bufferDeviceAddress` and `synchronization2`:
-/// a chain of the older structures for single features serves as well, filled by you.)
+/// `VkPhysicalDeviceVulkan12Features` and a `VkPhysicalDeviceVulkan13Features`, or the structures of single features,
+/// `VkPhysicalDeviceBufferDeviceAddressFeatures` and `VkPhysicalDeviceSynchronization2Features`: the features that the library needs become
+/// `VK_TRUE` in them, all others stay as they are. They do so even if the device lacks them.
 ///
 /// Returns `GRIDWALK_RESULT_ERROR_UNSUITABLE` if the device cannot serve; then `gridwalk_last_error` names all that it lacks, separated by
 /// semicolons.
@@ -91,7 +90,7 @@ pub unsafe extern "C" fn gridwalk_requirements(
     guard(|| {
         if !features.is_null() {
             // SAFETY: the caller's contract.
-            unsafe { enable_features(features.cast())? };
+            unsafe { requirements::fill(features)? };
         }
         // SAFETY: the caller's contract.
         let instance = unsafe { load::instance(get_instance_proc_addr, instance)? };
@@ -102,55 +101,6 @@ pub unsafe extern "C" fn gridwalk_requirements(
         let missing = unsafe { requirements::query(&instance, physical_device) }.missing;
         if missing.is_empty() { Ok(()) } else { Err(gridwalk::Error::Unsuitable { missing }.into()) }
     })
-}
-
-/// Sets the features of [`requirements::features`] in a chain.
-///
-/// # Safety
-/// As for [`gridwalk_requirements`].
-unsafe fn enable_features(mut next: *mut vk::BaseOutStructure<'_>) -> Result<()> {
-    let needed = requirements::features();
-    let (mut found_12, mut found_13) = (false, false);
-    while !next.is_null() {
-        // SAFETY: every structure of a chain begins so.
-        let kind = unsafe { (*next).s_type };
-        if kind == vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES {
-            type Features = vk::PhysicalDeviceVulkan12Features<'static>;
-            let flags = offset_of!(Features, sampler_mirror_clamp_to_edge)..=offset_of!(Features, subgroup_broadcast_dynamic_id);
-            // SAFETY: the structure is what its type says, and nothing but flags lies between these two.
-            unsafe { or_flags(next.cast(), (&raw const needed.vulkan_12).cast(), flags) };
-            found_12 = true;
-        } else if kind == vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES {
-            type Features = vk::PhysicalDeviceVulkan13Features<'static>;
-            let flags = offset_of!(Features, robust_image_access)..=offset_of!(Features, maintenance4);
-            // SAFETY: as above.
-            unsafe { or_flags(next.cast(), (&raw const needed.vulkan_13).cast(), flags) };
-            found_13 = true;
-        }
-        // SAFETY: as above.
-        next = unsafe { (*next).p_next };
-    }
-    for (found, name) in [(found_12, "VkPhysicalDeviceVulkan12Features"), (found_13, "VkPhysicalDeviceVulkan13Features")] {
-        if !found {
-            return Err(Failure::Struct(format!("the chain `features` holds no {name}: is its sType set?")));
-        }
-    }
-    Ok(())
-}
-
-/// Sets the flags at these byte offsets, first to last, that are set in `from`.
-///
-/// # Safety
-/// Both point to structures with `VkBool32`s there.
-unsafe fn or_flags(to: *mut u8, from: *const u8, offsets: std::ops::RangeInclusive<usize>) {
-    for offset in offsets.step_by(size_of::<Bool32>()) {
-        // SAFETY: the caller's contract.
-        unsafe {
-            if from.add(offset).cast::<Bool32>().read() != vk::FALSE {
-                to.add(offset).cast::<Bool32>().write(vk::TRUE);
-            }
-        }
-    }
 }
 
 /// Makes a tracer: all pipelines, and nothing else. It takes from milliseconds to seconds, by the driver and the cache. After a failure
@@ -331,7 +281,7 @@ pub unsafe extern "C" fn gridwalk_cmd_build(
     guard(|| {
         // SAFETY: the caller's contract.
         let (tracer, info) = unsafe { (recorder(tracer, command_buffer)?, read_growing(info)?) };
-        let (grid, scratch, report) = (region("grid", &info.grid)?, region("scratch", &info.scratch)?, region("report", &info.report)?);
+        let (grid, scratch, report) = (info.grid.into(), info.scratch.into(), info.report.into());
         let build = BuildInfo {
             options: build_options(&info)?,
             timestamps: (info.timestamp_pool != vk::QueryPool::null())
@@ -355,13 +305,8 @@ pub unsafe extern "C" fn gridwalk_cmd_closest_hit(
     grid: VkDeviceAddress,
     info: *const GridwalkTraceInfo,
 ) -> GridwalkResult {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        unsafe {
-            let (tracer, info) = (recorder(tracer, command_buffer)?, read_growing(info)?);
-            Ok(tracer.cmd_closest_hit(command_buffer, grid, &trace_info(&info)?)?)
-        }
-    })
+    // SAFETY: the caller's contract.
+    unsafe { trace(tracer, command_buffer, info, |tracer, info| tracer.cmd_closest_hit(command_buffer, grid, info)) }
 }
 
 /// Records a search for whether each ray hits anything in the grid at `grid`.
@@ -375,13 +320,8 @@ pub unsafe extern "C" fn gridwalk_cmd_any_hit(
     grid: VkDeviceAddress,
     info: *const GridwalkTraceInfo,
 ) -> GridwalkResult {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        unsafe {
-            let (tracer, info) = (recorder(tracer, command_buffer)?, read_growing(info)?);
-            Ok(tracer.cmd_any_hit(command_buffer, grid, &trace_info(&info)?)?)
-        }
-    })
+    // SAFETY: the caller's contract.
+    unsafe { trace(tracer, command_buffer, info, |tracer, info| tracer.cmd_any_hit(command_buffer, grid, info)) }
 }
 
 /// Records a count of the triangles that each ray hits in its interval, in the grid at `grid`.
@@ -395,13 +335,8 @@ pub unsafe extern "C" fn gridwalk_cmd_count_hits(
     grid: VkDeviceAddress,
     info: *const GridwalkTraceInfo,
 ) -> GridwalkResult {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        unsafe {
-            let (tracer, info) = (recorder(tracer, command_buffer)?, read_growing(info)?);
-            Ok(tracer.cmd_count_hits(command_buffer, grid, &trace_info(&info)?)?)
-        }
-    })
+    // SAFETY: the caller's contract.
+    unsafe { trace(tracer, command_buffer, info, |tracer, info| tracer.cmd_count_hits(command_buffer, grid, info)) }
 }
 
 /// Records a search for the `nearest` nearest hits of each ray in the grid at `grid`, at most `GRIDWALK_MAX_NEAREST`: as many `GridwalkHit`s a
@@ -418,12 +353,24 @@ pub unsafe extern "C" fn gridwalk_cmd_nearest_hits(
     info: *const GridwalkTraceInfo,
     nearest: u32,
 ) -> GridwalkResult {
+    // SAFETY: the caller's contract.
+    unsafe { trace(tracer, command_buffer, info, |tracer, info| tracer.cmd_nearest_hits(command_buffer, grid, info, nearest)) }
+}
+
+/// Records a trace by one of the library's functions.
+///
+/// # Safety
+/// As for `gridwalk_cmd_closest_hit`.
+unsafe fn trace(
+    tracer: *const GridwalkTracer,
+    command_buffer: VkCommandBuffer,
+    info: *const GridwalkTraceInfo,
+    record: impl FnOnce(&Tracer, &TraceInfo) -> gridwalk::Result<()>,
+) -> GridwalkResult {
     guard(|| {
         // SAFETY: the caller's contract.
-        unsafe {
-            let (tracer, info) = (recorder(tracer, command_buffer)?, read_growing(info)?);
-            Ok(tracer.cmd_nearest_hits(command_buffer, grid, &trace_info(&info)?, nearest)?)
-        }
+        let (tracer, info) = unsafe { (recorder(tracer, command_buffer)?, read_growing(info)?) };
+        Ok(record(tracer, &trace_info(&info)?)?)
     })
 }
 
@@ -442,16 +389,16 @@ fn input(info: &GridwalkBuildInfo) -> Result<Input> {
     let mesh = &info.geometry;
     if info.records.address == 0 && info.record_count == 0 {
         return Ok(Input::Mesh(Geometry {
-            positions: region("positions", &mesh.positions)?,
+            positions: mesh.positions.into(),
             vertex_count: mesh.vertex_count,
-            indices: region("indices", &mesh.indices)?,
+            indices: mesh.indices.into(),
             triangle_count: mesh.triangle_count,
         }));
     }
     if mesh.triangle_count != 0 {
         return Err(Failure::Option(format!("geometry.triangle_count = {}: 0 where records are given", mesh.triangle_count)));
     }
-    Ok(Input::Records(Records { records: region("records", &info.records)?, count: info.record_count }))
+    Ok(Input::Records(Records { records: info.records.into(), count: info.record_count }))
 }
 
 fn build_options(info: &GridwalkBuildInfo) -> Result<BuildOptions> {
@@ -469,37 +416,31 @@ fn build_options(info: &GridwalkBuildInfo) -> Result<BuildOptions> {
 fn trace_info(info: &GridwalkTraceInfo) -> Result<TraceInfo> {
     let count = match info.indirect_count.address {
         0 => RayCount::Direct(info.ray_count),
-        _ => RayCount::Indirect { count: region("ray count", &info.indirect_count)?, max: info.ray_count },
+        _ => RayCount::Indirect { count: info.indirect_count.into(), max: info.ray_count },
     };
-    let optional = |name, given: &GridwalkRegion| match given.address {
-        0 => Ok(None),
-        _ => region(name, given).map(Some),
-    };
-    let (rays, hits, scratch) = (region("rays", &info.rays)?, region("hits", &info.hits)?, region("trace scratch", &info.scratch)?);
+    let optional = |given: GridwalkRegion| (given.address != 0).then(|| given.into());
+    let (rays, hits, scratch) = (info.rays.into(), info.hits.into(), info.scratch.into());
     Ok(TraceInfo {
         resume: info.resume != vk::FALSE,
-        counters: optional("counters", &info.counters)?,
+        counters: optional(info.counters),
         mask: if info.mask == 0 { u32::MAX } else { info.mask },
-        masks: optional("masks", &info.masks)?,
+        masks: optional(info.masks),
         cull: match info.cull {
             GRIDWALK_CULL_NONE => Cull::None,
             GRIDWALK_CULL_BACK => Cull::Back,
             GRIDWALK_CULL_FRONT => Cull::Front,
             other => return Err(Failure::Option(format!("cull = {other}: 0 (none), 1 (back) or 2 (front)"))),
         },
-        geometries: optional("geometries", &info.geometries)?,
+        geometries: optional(info.geometries),
         ..TraceInfo::new(rays, hits, count, scratch)
     })
 }
 
-/// The library reckons with offsets and addresses inside of a region.
-fn region(name: &'static str, given: &GridwalkRegion) -> Result<Region> {
-    let GridwalkRegion { buffer, offset, size, address } = *given;
-    if offset.checked_add(size).is_none() || address.checked_add(size).is_none() {
-        let reason = format!("{size} bytes from offset {offset} and address {address:#x} on reach beyond 2^64");
-        return Err(gridwalk::Error::Region { region: name, reason }.into());
+impl From<GridwalkRegion> for Region {
+    fn from(region: GridwalkRegion) -> Region {
+        let GridwalkRegion { buffer, offset, size, address } = region;
+        Region { buffer, offset, size, address }
     }
-    Ok(Region { buffer, offset, size, address })
 }
 
 impl From<&GridwalkCapacity> for Capacity {

@@ -240,6 +240,11 @@ const COMMAND_BUFFER: u64 = 9;
 fn recording_allocates_nothing() {
     let tracer = Tracer::new();
     let (build, trace) = (build(&tracer), trace());
+    let records = GridwalkBuildInfo { geometry: zeroed(), records: region(128 * 10), record_count: 10, timestamp_pool: zeroed(), ..build };
+    let all = GridwalkTraceInfo { masks: region(400), mask: 5, cull: GRIDWALK_CULL_BACK, geometries: region(2400), resume: 1, ..trace };
+    let answers = GridwalkTraceInfo { resume: 0, ..all };
+    let counts = GridwalkTraceInfo { geometries: zeroed(), ..answers };
+    let nearest = GridwalkTraceInfo { hits: region(4800), ..all };
     let cmd = vk::CommandBuffer::from_raw(COMMAND_BUFFER);
     // What a thread allocates when it begins is not recording's.
     for round in 0..2 {
@@ -248,6 +253,7 @@ fn recording_allocates_nothing() {
         let results = unsafe {
             [
                 gridwalk_cmd_build(tracer.0, cmd, &build),
+                gridwalk_cmd_build(tracer.0, cmd, &records),
                 gridwalk_cmd_barrier(
                     tracer.0,
                     cmd,
@@ -257,11 +263,15 @@ fn recording_allocates_nothing() {
                     vk::AccessFlags2::SHADER_READ,
                 ),
                 gridwalk_cmd_closest_hit(tracer.0, cmd, 4096, &trace),
+                gridwalk_cmd_closest_hit(tracer.0, cmd, 4096, &all),
                 gridwalk_cmd_any_hit(tracer.0, cmd, 4096, &trace),
+                gridwalk_cmd_any_hit(tracer.0, cmd, 4096, &answers),
+                gridwalk_cmd_count_hits(tracer.0, cmd, 4096, &counts),
+                gridwalk_cmd_nearest_hits(tracer.0, cmd, 4096, &nearest, 3),
             ]
         };
         let after = (ALLOCATIONS.get(), COMMANDS.get());
-        assert_eq!(results, [GridwalkResult::Ok; 4], "{}", message());
+        assert_eq!(results, [GridwalkResult::Ok; 9], "{}", message());
         assert!(after.1 > before.1 + 100, "{} commands", after.1 - before.1);
         assert!(round == 0 || after.0 == before.0, "{} allocations", after.0 - before.0);
     }
@@ -277,6 +287,12 @@ fn what_is_refused_records_nothing() {
     let (mut build, mut trace) = (build(&tracer), trace());
     build.grid.size -= 1;
     trace.scratch.size = 64;
+    // One record too many; what a query does not have; regions that are too small for the hits of all, or reach beyond all addresses.
+    let records =
+        GridwalkBuildInfo { grid: region(build.grid.size + 1), geometry: zeroed(), records: region(128), record_count: 2, ..build };
+    let counts = GridwalkTraceInfo { scratch: region(1 << 20), geometries: region(800), ..trace };
+    let nearest = GridwalkTraceInfo { scratch: region(1 << 20), hits: region(4800), geometries: region(800), ..trace };
+    let beyond = GridwalkTraceInfo { scratch: GridwalkRegion { address: u64::MAX - 63, ..region(1 << 20) }, ..trace };
     let before = COMMANDS.get();
     // SAFETY: as above.
     let results = unsafe {
@@ -284,9 +300,16 @@ fn what_is_refused_records_nothing() {
             gridwalk_cmd_build(tracer.0, cmd, &build),
             gridwalk_cmd_closest_hit(tracer.0, cmd, 4096, &trace),
             gridwalk_cmd_any_hit(tracer.0, cmd, 4096, &trace),
+            gridwalk_cmd_build(tracer.0, cmd, &records),
+            gridwalk_cmd_nearest_hits(tracer.0, cmd, 4096, &nearest, 3),
+            gridwalk_cmd_closest_hit(tracer.0, cmd, 4096, &beyond),
+            gridwalk_cmd_count_hits(tracer.0, cmd, 4096, &counts),
+            gridwalk_cmd_nearest_hits(tracer.0, cmd, 4096, &counts, 65),
         ]
     };
-    assert_eq!(results, [GridwalkResult::ErrorRegion; 3]);
+    let (regions, options) = results.split_at(6);
+    assert_eq!(regions, [GridwalkResult::ErrorRegion; 6]);
+    assert_eq!(options, [GridwalkResult::ErrorOption; 2]);
     assert_eq!(COMMANDS.get(), before);
 }
 
@@ -309,4 +332,24 @@ fn functions_that_vulkan_does_not_know_are_named() {
         let message = message();
         assert!(message.contains(unknown.to_str().unwrap_or_default()) && message.contains(of), "{message}");
     }
+}
+
+/// The features may lie in the structures of Vulkan's versions or in those of single features.
+#[test]
+fn the_features_are_set_in_either_kind_of_structure() {
+    let requirements = |features: *mut std::ffi::c_void| {
+        // SAFETY: the functions are those above, and the chain is one.
+        unsafe {
+            gridwalk_requirements(desc().get_instance_proc_addr, vk::Instance::from_raw(1), vk::PhysicalDevice::from_raw(2), features)
+        }
+    };
+    let mut synchronization = vk::PhysicalDeviceSynchronization2Features::default();
+    let mut address = vk::PhysicalDeviceBufferDeviceAddressFeatures { p_next: (&raw mut synchronization).cast(), ..Default::default() };
+    assert_eq!(requirements((&raw mut address).cast()), GridwalkResult::Ok, "{}", message());
+    assert_eq!((address.buffer_device_address, synchronization.synchronization2), (vk::TRUE, vk::TRUE));
+    assert_eq!(address.buffer_device_address_capture_replay, vk::FALSE);
+    let mut alone = vk::PhysicalDeviceVulkan13Features::default();
+    assert_eq!(requirements((&raw mut alone).cast()), GridwalkResult::ErrorStruct);
+    assert!(message().contains("VkPhysicalDeviceVulkan12Features"), "{}", message());
+    assert_eq!(requirements(std::ptr::null_mut()), GridwalkResult::Ok);
 }

@@ -23,6 +23,12 @@ pub enum Error {
         /// All that is missing.
         missing: Vec<String>,
     },
+    /// A chain of features has no place for one that is needed.
+    #[error("the chain of features holds no {structure}: is its sType set?")]
+    Chain {
+        /// The structure that would have it.
+        structure: &'static str,
+    },
     /// A capacity is beyond what a grid can hold.
     #[error("a capacity of {given} {what} is beyond the limit of {limit}")]
     Capacity {

@@ -1,6 +1,8 @@
 //! Finds what a plan's barriers do not order: a walk over the steps as the device may run them.
 
-use crate::plan::{Barrier, Buffer, Dispatch, Item, Plan};
+use gridwalk_core::kernel::Access;
+
+use crate::plan::{Barrier, Buffer, Dispatch, Item, Plan, Step};
 
 /// An access that nothing orders after an earlier one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +64,7 @@ pub fn find_hazard_in(items: &[Item]) -> Option<Hazard> {
                 return hazard(buffer, HazardKind::StaleArguments);
             }
         }
-        for (access, (_, kind)) in step.kernel.accesses.iter().enumerate() {
-            let buffer = step.buffer(access);
+        for (buffer, kind) in accesses(step) {
             let state = pending[buffer as usize];
             if kind.reads() && state.written {
                 return hazard(buffer, HazardKind::ReadAfterWrite);
@@ -75,8 +76,8 @@ pub fn find_hazard_in(items: &[Item]) -> Option<Hazard> {
                 return hazard(buffer, HazardKind::WriteAfterRead);
             }
         }
-        for (access, (_, kind)) in step.kernel.accesses.iter().enumerate() {
-            let state = &mut pending[step.buffer(access) as usize];
+        for (buffer, kind) in accesses(step) {
+            let state = &mut pending[buffer as usize];
             state.read |= kind.reads();
             state.written |= kind.writes();
         }
@@ -85,4 +86,14 @@ pub fn find_hazard_in(items: &[Item]) -> Option<Hazard> {
         }
     }
     None
+}
+
+/// The parts of a grid that its header leads to.
+const BEHIND_HEADER: [Buffer; 4] = [Buffer::Cells, Buffer::References, Buffer::Triangles, Buffer::Bricks];
+
+/// What a step reads and writes: by its own qualifiers; and a kernel that traces rays, all of the grid whose header it is given.
+fn accesses(step: &Step) -> impl Iterator<Item = (Buffer, Access)> + '_ {
+    let own = step.kernel.accesses.iter().enumerate().map(|(access, (_, kind))| (step.buffer(access), *kind));
+    let traces = own.clone().any(|(buffer, _)| buffer == Buffer::Rays);
+    own.chain(BEHIND_HEADER.into_iter().filter(move |_| traces).map(|buffer| (buffer, Access::Read)))
 }

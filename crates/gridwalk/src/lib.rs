@@ -8,9 +8,10 @@
 //!
 //! # The contract
 //!
-//! **Device.** Vulkan 1.3 with the features of [`requirements::features`] enabled: `bufferDeviceAddress` and `synchronization2`.
-//! [`requirements::query`] names all that a physical device lacks. No descriptor sets, no 64-bit integers, no subgroup operations, any
-//! subgroup size. The queue needs compute; ownership of buffers among queue families is the caller's affair.
+//! **Device.** Vulkan 1.3 with `bufferDeviceAddress` and `synchronization2` enabled. [`requirements()`] names all that a physical device lacks,
+//! or gives the feature structures to chain into the device's creation; [`requirements::fill`] enables the features in a chain of the
+//! caller's own. No descriptor sets, no 64-bit integers, no subgroup operations, any subgroup size. The queue needs compute; ownership of
+//! buffers among queue families is the caller's affair.
 //!
 //! **Memory.** [`Tracer::build_sizes`] turns a [`Capacity`] into bytes, alignment and usage flags of three regions:
 //!
@@ -20,8 +21,21 @@
 //! | scratch | pairs while they are sorted, counters, dispatch arguments | while a build runs; builds that do not overlap in time may share it |
 //! | report | a [`Report`] | until the host has read it, if it wants to |
 //!
-//! Regions begin at multiples of [`REGION_ALIGNMENT`] of their device address, do not overlap, and may lie in one buffer. Contents need no
-//! initialization and survive nothing but their purpose: a build overwrites all that it later reads.
+//! These, and the scratch of a trace ([`Tracer::trace_scratch_size`]), begin at multiples of [`REGION_ALIGNMENT`] of their device address.
+//! Both scratches need `INDIRECT_BUFFER` beside `SHADER_DEVICE_ADDRESS`; all else needs that alone. What the caller writes and reads:
+//!
+//! | region | an element | address a multiple of |
+//! |---|---|---|
+//! | positions, indices of one mesh | 12 bytes | 4 |
+//! | [`GeometryRecord`]s | 128 bytes | 16 |
+//! | [`Ray`]s | 32 bytes | 16 |
+//! | [`Hit`]s; answers of any hit and of counts | 16 bytes; 4 | 16; 4 |
+//! | number of rays, masks | 4 bytes | 4 |
+//! | geometries | 8 bytes | 8 |
+//! | counters | 16 bytes | 16 |
+//!
+//! Regions that are written do not overlap any other; all may lie in one buffer. Contents need no initialization and survive nothing but
+//! their purpose: a build overwrites all that it later reads. What is too small or badly aligned is refused when recording.
 //!
 //! **Geometry.** One mesh, as tightly packed `f32` triples and `u32` triples ([`Input::Mesh`]); or any number of geometries and instances, as
 //! [`GeometryRecord`]s in device memory that the host or a shader has written ([`Input::Records`]): position formats with stride, scale and
@@ -127,6 +141,7 @@ pub use error::{Error, Result};
 pub use gridwalk_core;
 pub use gridwalk_core::geometry::MAX_GEOMETRIES;
 pub use gridwalk_core::{GeometryRecord, Hit, MISS, Ray, Report, UNFINISHED, kernel};
+pub use requirements::requirements;
 pub use shape::{Shape, split_workgroups};
 pub use sizes::{
     BuildSizes, Capacity, MAX_CELLS, MAX_PAIRS, MAX_RAYS, MAX_TRIANGLES, MAX_VERTICES, REGION_ALIGNMENT, RegionSize, region_bytes,

@@ -1,6 +1,35 @@
-//! What the library needs of a device.
+//! What the library needs of a device: asked for, and said, before there is one.
+
+use std::ffi::c_void;
 
 use ash::vk;
+
+use crate::error::{Error, Result};
+
+/// What a device must have enabled, if the physical device can serve: [`query`] and [`features`] in one.
+///
+/// ```no_run
+/// use gridwalk::ash::{self, vk};
+///
+/// unsafe fn create(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Result<ash::Device, Box<dyn std::error::Error>> {
+///     let mut features = unsafe { gridwalk::requirements(instance, physical_device)? }; // the error names all that is missing
+///     features.vulkan_12.timeline_semaphore = vk::TRUE; // what the engine itself wants, in the same structures
+///     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(0).queue_priorities(&[1.0])];
+///     let info = features.chain(vk::DeviceCreateInfo::default().queue_create_infos(&queues));
+///     Ok(unsafe { instance.create_device(physical_device, &info, None)? })
+/// }
+/// ```
+///
+/// # Errors
+/// [`Error::Unsuitable`] names all that the physical device lacks.
+///
+/// # Safety
+/// As for [`query`].
+pub unsafe fn requirements(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Result<Features> {
+    // SAFETY: the caller's contract.
+    let Found { missing, .. } = unsafe { query(instance, physical_device) };
+    if missing.is_empty() { Ok(features()) } else { Err(Error::Unsuitable { missing }) }
+}
 
 /// What a physical device offers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +47,7 @@ pub struct Found {
 ///
 /// ```
 /// let mut features = gridwalk::requirements::features();
-/// let info = ash::vk::DeviceCreateInfo::default().push_next(&mut features.vulkan_12).push_next(&mut features.vulkan_13);
+/// let info = features.chain(gridwalk::ash::vk::DeviceCreateInfo::default());
 /// # let _ = info;
 /// ```
 pub fn features() -> Features {
@@ -36,6 +65,57 @@ pub struct Features {
     pub vulkan_12: vk::PhysicalDeviceVulkan12Features<'static>,
     /// `synchronization2`.
     pub vulkan_13: vk::PhysicalDeviceVulkan13Features<'static>,
+}
+
+impl Features {
+    /// Puts the structures before whatever the device's creation has chained already.
+    pub fn chain<'a>(&'a mut self, info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
+        info.push_next(&mut self.vulkan_12).push_next(&mut self.vulkan_13)
+    }
+}
+
+/// Enables what the library needs in a chain of the caller's own, which leaves all else as it is: in `VkPhysicalDeviceVulkan12Features` and
+/// `VkPhysicalDeviceVulkan13Features`, or in the structures of single features, `VkPhysicalDeviceBufferDeviceAddressFeatures` and
+/// `VkPhysicalDeviceSynchronization2Features`.
+///
+/// # Errors
+/// [`Error::Chain`] if the chain has no place for a feature; the others are enabled then.
+///
+/// # Safety
+/// `first` is null or the first structure of a chain by `pNext`, which ends, and whose structures are as their `sType` says.
+pub unsafe fn fill(first: *mut c_void) -> Result<()> {
+    let (mut address, mut synchronization) = (false, false);
+    let mut next = first.cast::<vk::BaseOutStructure>();
+    // SAFETY: every structure of a chain begins with type and next, and is what its type says.
+    unsafe {
+        while let Some(structure) = next.as_mut() {
+            match structure.s_type {
+                vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
+                    (*next.cast::<vk::PhysicalDeviceVulkan12Features>()).buffer_device_address = vk::TRUE;
+                    address = true;
+                }
+                vk::StructureType::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
+                    (*next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures>()).buffer_device_address = vk::TRUE;
+                    address = true;
+                }
+                vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_3_FEATURES => {
+                    (*next.cast::<vk::PhysicalDeviceVulkan13Features>()).synchronization2 = vk::TRUE;
+                    synchronization = true;
+                }
+                vk::StructureType::PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES => {
+                    (*next.cast::<vk::PhysicalDeviceSynchronization2Features>()).synchronization2 = vk::TRUE;
+                    synchronization = true;
+                }
+                _ => {}
+            }
+            next = (*next).p_next;
+        }
+    }
+    match (address, synchronization) {
+        (false, _) => Err(Error::Chain { structure: "VkPhysicalDeviceVulkan12Features" }),
+        (_, false) => Err(Error::Chain { structure: "VkPhysicalDeviceVulkan13Features" }),
+        _ => Ok(()),
+    }
 }
 
 /// Looks at a physical device.

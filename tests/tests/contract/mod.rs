@@ -1,10 +1,14 @@
 //! What stands at the head of crate `gridwalk`, on a device and in memory that the tests make by hand, under synchronization validation.
 //!
 //! The layers see what commands name by handle: fills, copies and the arguments of indirect dispatches. What kernels reach by address they
-//! do not see; of that the plans' own walk for hazards speaks (`rebuild::plan`), and the hits here.
+//! do not see, and a driver on the CPU, which runs one dispatch after another, gives the right hits without a barrier too: for such a barrier
+//! nothing that runs here can be a negative control. Of these barriers the plans' own walk for hazards speaks (`rebuild::plan`): it knows
+//! what each kernel reads and writes, and finds a hazard where any barrier is left out, the library's or the caller's.
 
 mod cache;
 mod calls;
+mod memory;
+mod requirements;
 mod state;
 
 use gridwalk::ash::vk;

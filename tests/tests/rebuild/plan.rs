@@ -79,6 +79,38 @@ fn every_barrier_is_needed() {
     }
 }
 
+/// The caller's barriers: each suffices; and without it some build or trace of the kind races with what came before, if they share a grid or
+/// scratch. Not all do: many begin with steps after which a barrier of their own comes. That is no promise; the contract asks for all.
+#[test]
+fn the_callers_barriers_are_needed() {
+    let (builds, traces) = (builds(), traces());
+    let [(_, mesh), (_, records)] = &builds[2..4] else { panic!("two builds") };
+    for (name, trace) in &traces {
+        for (what, first, second, needed) in [
+            ("trace, build", trace, mesh, true),
+            ("trace, build of records", trace, records, false),
+            ("build, build", mesh, mesh, false),
+            ("builds of records", records, records, true),
+            ("build, trace", mesh, trace, false),
+            ("trace, trace", trace, trace, true),
+        ] {
+            let hazard = |barrier: Option<Barrier>| {
+                let between = barrier.map(Item::Barrier);
+                find_hazard_in(&first.items().iter().copied().chain(between).chain(second.items().iter().copied()).collect::<Vec<_>>())
+            };
+            assert_eq!(hazard(Some(Barrier::ShaderAndIndirect)), None, "{name}: {what}");
+            assert_eq!(hazard(None).is_some(), needed, "{name}: {what}, without a barrier");
+        }
+    }
+    let (_, build) = &builds[2];
+    // A walk right behind a build, as a shader of the caller's is.
+    let (_, trace) = &traces[0];
+    let walk = trace.items().iter().copied().find(|item| matches!(item, Item::Step(step) if step.kernel.name == "closest_hit")).unwrap();
+    let behind = |between: Option<Item>| find_hazard_in(&build.items().iter().copied().chain(between).chain([walk]).collect::<Vec<_>>());
+    assert_eq!(behind(None).map(|hazard| hazard.kind), Some(HazardKind::ReadAfterWrite));
+    assert_eq!(behind(Some(Item::Barrier(Barrier::ShaderAndIndirect))), None);
+}
+
 /// The walk sees each kind of hazard, where it is.
 #[test]
 fn hazards_are_named() {
