@@ -106,6 +106,8 @@ pub(crate) struct KeyTrack {
     pub(crate) interpolate: bool,
     /// What is done to each key-frame.
     pub(crate) edit: Edit,
+    /// Moves the mesh as a whole.
+    pub(crate) placed: Option<PlacedCurve>,
 }
 
 /// A mesh, a camera or a light of a glTF file.
@@ -198,7 +200,7 @@ pub enum Motion {
     /// Not at all: [`Scene::meshes`] holds it.
     #[default]
     Still,
-    /// By key-frames, each a mesh of its own: [`Animation::keys_at`], [`KeyReader::read`].
+    /// By key-frames, each a mesh of its own: [`Animation::keys_at`], [`KeyReader::read`]; some as a whole, too: [`Animation::pose`].
     Keys,
     /// By morph targets, a skin, or a moving node: [`Animation::pose`].
     Deformed(Box<Deformed>),
@@ -215,7 +217,7 @@ pub struct KeyPair {
     pub weight: f32,
 }
 
-/// A key-frame as read from its file, in world space.
+/// A key-frame as read from its file, in world space, or before the matrix of [`Animation::pose`] where its mesh has one.
 #[derive(Clone, Debug, Default)]
 pub struct KeyFrame {
     /// The mesh. Its materials count over those of the scene and all that were added by this reader so far, this key-frame's included.
@@ -332,12 +334,13 @@ impl Animation {
         }
     }
 
-    /// Brings `pose` to that of a deformed mesh at a time, without allocating where it held one of the same mesh before.
-    /// For meshes that are not deformed it becomes empty.
+    /// Brings `pose` to that of a deformed mesh at a time, without allocating where it held one of the same mesh before. For a mesh of
+    /// key-frames that moves as a whole, too, it holds the one matrix that takes it from its own space to the world; for others it becomes
+    /// empty.
     pub fn pose(&self, mesh: usize, time: f64, pose: &mut Pose) {
         match self.tracks.meshes.get(mesh) {
             Some(MeshTrack::Rig(track)) => track.rig.pose(track.number, time, pose),
-            Some(MeshTrack::Placed(curve)) => curve.pose(time, pose),
+            Some(MeshTrack::Placed(curve) | MeshTrack::Keys(KeyTrack { placed: Some(curve), .. })) => curve.pose(time, pose),
             _ => {
                 pose.matrices.clear();
                 pose.weights.clear();

@@ -959,8 +959,6 @@ impl Builder<'_> {
                 return Err(source.error_in(interpolation.span(), "interpolation of a mesh belongs to keys; a sequence has interpolate"));
             }
             self.transform(&entry)?
-        } else if let Some(sequence) = &entry.sequence {
-            return Err(source.error_in(sequence.span(), "a mesh has keys or a sequence, not both"));
         } else {
             // The keys hold the rest of its place.
             self.matrix(&entry)?.unwrap_or(Transform::IDENTITY)
@@ -978,8 +976,16 @@ impl Builder<'_> {
             }
             (None, Some(sequence), None) => {
                 self.refuse_shape_keys(&entry, at)?;
-                let track = self.sequence(&entry, sequence, &mut edit)?;
-                let mesh = first_mesh(&mut self.assets, &mut self.cache, &track).map_err(|error| self.in_place(sequence.span(), error))?;
+                let mut track = self.sequence(&entry, sequence, &mut edit)?;
+                let span = sequence.span();
+                if !entry.key.is_empty() {
+                    // `loop` is the sequence's.
+                    entry.looped = None;
+                    let placed = self.placed(&mut entry, at)?;
+                    self.courses.push(Course::of(placed.curve()));
+                    track.placed = Some(placed);
+                }
+                let mesh = first_mesh(&mut self.assets, &mut self.cache, &track).map_err(|error| self.in_place(span, error))?;
                 self.courses.push(track.course());
                 self.tracks.meshes.push(MeshTrack::Keys(track));
                 self.motions.push(Motion::Keys);
@@ -1076,6 +1082,7 @@ impl Builder<'_> {
             looped: entry.looped.unwrap_or(false),
             interpolate: entry.interpolate.unwrap_or(true),
             edit: edit.clone(),
+            placed: None,
         })
     }
 

@@ -8,6 +8,7 @@ use std::time::Instant;
 use crate::animation::{KeyTrack, blend};
 use crate::assets::Assets;
 use crate::mesh_file::{self, Timed};
+use crate::moving::PlacedCurve;
 use crate::{Error, KeyFrame, Mesh, Result};
 
 /// Reads key-frames; made by [`Animation::reader`](crate::Animation::reader) for a thread of its own. It owns all that it needs.
@@ -56,7 +57,7 @@ impl KeyReader {
     }
 }
 
-/// A key-frame of a mesh, in world space.
+/// A key-frame of a mesh, in world space, or before the matrix that moves it as a whole.
 pub(crate) fn fetch(assets: &mut Assets, cache: &mut Cache, track: &KeyTrack, key: u32) -> Result<Timed> {
     let path = track.sequence.path(&assets.files, key)?;
     let begin = Instant::now();
@@ -71,16 +72,22 @@ pub(crate) fn fetch(assets: &mut Assets, cache: &mut Cache, track: &KeyTrack, ke
     };
     let mut mesh = Arc::unwrap_or_clone(shared);
     track.edit.apply(&mut mesh);
+    if track.placed.as_ref().is_some_and(PlacedCurve::is_mirrored) {
+        mesh.indices.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
     Ok(Timed { mesh, read_ms, parse_ms: mesh_file::milliseconds(begin) - read_ms })
 }
 
-/// A sequence's mesh at time 0.
+/// A sequence's mesh at time 0, in world space.
 pub(crate) fn first_mesh(assets: &mut Assets, cache: &mut Cache, track: &KeyTrack) -> Result<Mesh> {
     let keys = track.at(0.0);
     let mut mesh = fetch(assets, cache, track, keys.first)?.mesh;
     if keys.weight > 0.0 {
         let second = fetch(assets, cache, track, keys.second)?.mesh;
         blend(&mut mesh, &second, keys.weight);
+    }
+    if let Some(placed) = &track.placed {
+        placed.place(&mut mesh);
     }
     Ok(mesh)
 }

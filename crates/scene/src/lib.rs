@@ -118,7 +118,7 @@
 //! last = 23
 //! ```
 //!
-//! Cameras, lights and meshes that are no sequences may have keys. What a key does not give is as in the key before it, and in the first key
+//! Cameras, lights and meshes may have keys; a mesh of key-frames then moves as a whole, too (its `loop` is the sequence's). What a key does not give is as in the key before it, and in the first key
 //! as in the camera, the light or the mesh itself. Before the first key and after the last one nothing moves, unless it loops: then the last
 //! key is the end at which everything begins anew, and should be as the first (or a whole turn away).
 //!

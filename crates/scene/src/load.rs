@@ -82,7 +82,8 @@ pub(crate) fn ending(path: &Path) -> Option<String> {
 fn open_sequence(pattern: Pattern, folder: &Path, options: &LoadOptions) -> Result<Animation> {
     let sequence = Sequence::numbered(pattern, folder, Range::default(), true).map_err(|message| Error::Sequence { message })?;
     let edit = Edit { name: Some(sequence.title()), ..Edit::default() };
-    let track = KeyTrack { sequence: Arc::new(sequence), fps: DEFAULT_FPS, start: 0.0, looped: false, interpolate: true, edit };
+    let track =
+        KeyTrack { sequence: Arc::new(sequence), fps: DEFAULT_FPS, start: 0.0, looped: false, interpolate: true, edit, placed: None };
     let mut assets = Assets::new(Some(folder), options)?;
     let mut cache = Cache::new(options.max_key_cache_bytes);
     let mesh = first_mesh(&mut assets, &mut cache, &track)?;

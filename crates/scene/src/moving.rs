@@ -164,6 +164,18 @@ impl PlacedCurve {
         base
     }
 
+    /// Whether it mirrors the mesh, which it does always or never.
+    pub(crate) fn is_mirrored(&self) -> bool {
+        self.transform(0.0).is_mirrored()
+    }
+
+    /// Takes a key-frame to its place at time 0. Of one that will be mirrored the winding is turned already.
+    pub(crate) fn place(&self, mesh: &mut Mesh) {
+        let indices = std::mem::take(&mut mesh.indices);
+        self.transform(0.0).apply(mesh);
+        mesh.indices = indices;
+    }
+
     pub(crate) fn curve(&self) -> &Curve<9> {
         &self.0
     }

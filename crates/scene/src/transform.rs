@@ -51,6 +51,10 @@ impl Transform {
         self.rows().map(|row| row.map(single))
     }
 
+    pub(crate) fn is_mirrored(&self) -> bool {
+        self.determinant() < 0.0
+    }
+
     fn determinant(&self) -> f64 {
         dot(self.rows[0], cross(self.rows[1], self.rows[2]))
     }

@@ -213,3 +213,30 @@ fn colours_of_vertices_are_those_of_a_material() {
     assert!(beauty(&by_material).iter().zip(beauty(&by_colours)).all(|(a, b)| (a - b).abs() <= 1e-6));
     assert!(beauty(&dull) != beauty(&by_colours));
 }
+
+/// What is seen through stays so when the arrays are made anew beside it, opacities of vertices included.
+#[test]
+fn panes_stay_when_key_frames_grow() {
+    let keys = [4, 40, 6].map(|segments| generate::sphere([0.0; 3], 0.9, segments));
+    let text = "ambient = 0.5\n[[material]]\nname = \"pane\"\nblend = true\ndiffuse = [1, 0, 0]\n[[mesh]]\nsequence = \"key.%04d.obj\"\nfps = 1\n\
+                [[mesh]]\nshape = \"quad\"\ncorners = [[-1, -1, 1.5], [1, -1, 1.5], [1, 1, 1.5], [-1, 1, 1.5]]\nmaterial = \"pane\"\n";
+    let folder = sequence(&keys, text);
+    let open = || {
+        let mut animation = animation(folder.path());
+        animation.scene.meshes[1].opacities = vec![0.0, 0.25, 1.0, 0.5];
+        animation
+    };
+    let mut run = player(open());
+    assert!(run.scene().has_blends());
+    let mut reader = run.animation().reader().unwrap();
+    let mut grown = 0;
+    for (time, key) in [(0.0, 0), (1.0, 1), (2.0, 2), (0.0, 0)] {
+        grown += seek(&mut run, time, &[]).grown;
+        let mut scene = open().scene;
+        scene.meshes[0] = reader.read(0, key).unwrap().mesh;
+        assert_same_picture(&format!("key-frame {key}"), &shoot_player(&run), &shoot_still(&scene));
+        scene.meshes[1].opacities.clear();
+        assert!(differ(&shoot_player(&run), &shoot_still(&scene)), "without opacities it is solid");
+    }
+    assert!(grown > 0);
+}

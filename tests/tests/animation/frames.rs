@@ -177,3 +177,69 @@ fn materials_that_come_late_have_the_same_numbers_in_every_order() {
     );
     assert!(seen.contains(&1) && seen.contains(&2), "{seen:?}");
 }
+
+/// A ball that changes its shape by key-frames, goes along a path, turns and is mirrored, at its own rate and on another loop.
+#[test]
+fn a_mesh_of_key_frames_moves_as_a_whole_too() {
+    let keys: Vec<Mesh> = (0..3)
+        .map(|key| {
+            let mut mesh = generate::sphere([0.0; 3], 0.5, 12);
+            mesh.positions.iter_mut().for_each(|p| p[1] *= 1.0 + 0.5 * key as f32);
+            mesh
+        })
+        .collect();
+    let folder = sequence(
+        &keys,
+        "ambient = 0.2\n[[mesh]]\nsequence = \"key.%04d.obj\"\nfps = 10\nloop = true\n[[mesh.key]]\ntime = 0\nscale = [-1, 1, 1]\n\
+         [[mesh.key]]\ntime = 1\ntranslate = [1, 0, -2]\nrotate = [0, 0, 90]\nscale = [-2, 1, 1]\n",
+    );
+    let mut run = play(folder.path());
+    assert_eq!(run.animation().duration, 1.0, "the path is the longer");
+    let reader = &mut run.animation().reader().unwrap();
+    let own: Vec<Mesh> = (0..3).map(|key| reader.read(0, key).unwrap().mesh).collect();
+    let times: Vec<f64> = (0..7).map(|frame| f64::from(frame) * 0.2).collect();
+    let mut pictures = Vec::new();
+    for (frame, &time) in times.iter().enumerate() {
+        seek(&mut run, time, &times[frame + 1..]);
+        pictures.push(shoot_player(&run));
+        let keys = run.animation().keys_at(0, time);
+        let (first, second) = (&own[keys.first as usize], &own[keys.second as usize]);
+        // Between the two keys all goes straight; after the last it stays.
+        let part = time.min(1.0);
+        let (sin, cos) = (part * std::f64::consts::FRAC_PI_2).sin_cos();
+        let found = run.scene().read_positions().unwrap();
+        for (i, found) in found.iter().enumerate().take(first.positions.len()) {
+            let p: [f64; 3] = std::array::from_fn(|axis| {
+                let (a, b) = (f64::from(first.positions[i][axis]), f64::from(second.positions[i][axis]));
+                a + (b - a) * f64::from(keys.weight)
+            });
+            let x = -(1.0 + part) * p[0];
+            let expected = [cos * x - sin * p[1] + part, sin * x + cos * p[1], p[2] - 2.0 * part];
+            let error = (0..3).map(|axis| (f64::from(found[axis]) - expected[axis]).abs()).fold(0.0, f64::max);
+            assert!(error < 2e-6, "vertex {i} at {time}: {found:?}, expected {expected:?}");
+        }
+        // Mirrored, but not turned inside out.
+        let middle = [part, 0.0, -2.0 * part].map(|value| value as f32);
+        let indices = run.scene().read_indices().unwrap();
+        let outwards = indices.iter().filter(|corners| {
+            let [a, b, c] = corners.map(|corner| found[corner as usize]);
+            let minus = |a: [f32; 3], b: [f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+            let (u, v, w) = (minus(b, a), minus(c, a), minus(a, middle));
+            let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            cross[0] * w[0] + cross[1] * w[1] + cross[2] * w[2] >= 0.0
+        });
+        assert_eq!(outwards.count(), first.indices.len());
+    }
+    for frame in [6, 2, 3] {
+        let mut alone = play(folder.path());
+        seek(&mut alone, times[frame], &[]);
+        assert_same_picture(&format!("frame {frame}"), &pictures[frame], &shoot_player(&alone));
+    }
+    assert!(!seek(&mut run, times[6], &[]).rebuilt);
+    // Negative control: it does move between two frames of one key-frame, which here are a loop apart.
+    seek(&mut run, 0.3, &[]);
+    let early = shoot_player(&run);
+    seek(&mut run, 0.6, &[]);
+    assert_eq!(run.animation().keys_at(0, 0.3), run.animation().keys_at(0, 0.6));
+    assert!(differ(&early, &shoot_player(&run)));
+}

@@ -233,7 +233,6 @@ fn what_is_wrong_is_told_with_its_line() {
             format!("{mesh}[[mesh.key]]\ntime = 0\n[[mesh.key]]\ntime = 1\nscale = [1, -1, 1]\n"),
             "7: a scale must keep its sign from key to key: on the way it would flatten the mesh",
         ),
-        ("[[mesh]]\nsequence = \"a%d.obj\"\n[[mesh.key]]\ntime = 0\n".to_owned(), "2: a mesh has keys or a sequence, not both"),
         (
             "[[mesh]]\nsequence = \"a.obj\"\n".to_owned(),
             "2: \"a.obj\" has no place for a number; write %04d or #### for it, or file = for a mesh that stands still",

@@ -7,7 +7,7 @@ use crate::{
     scene::{Arrays, VertexRange},
 };
 use gridwalk::gridwalk_core::twin::motion::{ActiveTarget, Influence, NO_DELTAS};
-use gridwalk_scene::{Deformed, Pose};
+use gridwalk_scene::{Animation, Deformed, Pose};
 
 /// The kernels that move a mesh.
 pub(super) struct BendKernels {
@@ -176,5 +176,49 @@ impl Bent {
             influences_each: self.influences_each,
         };
         recorder.dispatch(&kernels.skin, &push, map_groups(self.vertex_count));
+    }
+}
+
+/// A mesh of key-frames that moves as a whole: a matrix after the interpolation.
+#[derive(Debug)]
+pub(super) struct Placing {
+    pose_memory: Buffer,
+    /// The pose to come, and the one that the scene shows.
+    pub(super) next: Pose,
+    pub(super) shown: Pose,
+}
+
+impl Placing {
+    /// Of a mesh of an animation; `None` where no matrix moves it.
+    pub(super) fn new(context: &Context, animation: &Animation, mesh: usize) -> Result<Option<Placing>> {
+        let mut next = Pose::default();
+        animation.pose(mesh, 0.0, &mut next);
+        if next.matrices.is_empty() {
+            return Ok(None);
+        }
+        let desc = BufferDesc { name: "pose", size: MATRIX_BYTES, kind: BufferKind::Device, dedicated: false };
+        Ok(Some(Placing { pose_memory: context.buffer(&desc)?, next, shown: Pose::default() }))
+    }
+
+    /// Bytes and place of what [`Placing::record`] reads of the pose.
+    pub(super) fn pose_part(&self) -> (&Buffer, u64, &[u8]) {
+        (&self.pose_memory, 0, bytemuck::cast_slice(self.next.matrices.get(..1).unwrap_or_default().as_flattened()))
+    }
+
+    /// Records the kernel that moves the mesh's vertices in the scene's arrays where they are: each is read before it is written.
+    pub(super) fn record(&self, recorder: &mut Recorder<'_>, kernels: &BendKernels, arrays: &Arrays, range: &VertexRange, count: u32) {
+        let first = u64::from(range.first) * 12;
+        let (positions, normals) = (arrays.positions.address() + first, arrays.normals.address() + first);
+        let push = push::Skin {
+            base_positions: positions,
+            base_normals: normals,
+            influences: self.pose_memory.address(),
+            matrices: self.pose_memory.address(),
+            positions,
+            normals,
+            vertex_count: count,
+            influences_each: 0,
+        };
+        recorder.dispatch(&kernels.skin, &push, map_groups(count));
     }
 }

@@ -16,7 +16,7 @@ use crate::{
     push,
     scene::{Arrays, VertexRange, check_room, update_buffer, with_slack},
 };
-use bent::{BendKernels, Bent};
+use bent::{BendKernels, Bent, Placing};
 use gridwalk_scene::{Animation, KeyPair, Motion};
 use loader::{Lists, Loader, Reply, Request, Size, Slot, SlotLayout};
 use shelf::Shelf;
@@ -91,6 +91,8 @@ enum Way {
         /// The key-frames to come, as far as they can be blended, and those that the scene shows.
         next: KeyPair,
         shown: Option<KeyPair>,
+        /// Of a mesh that moves as a whole, too.
+        placing: Option<Box<Placing>>,
     },
     Bent {
         bent: Box<Bent>,
@@ -147,7 +149,8 @@ impl Player {
                         Slot::new(context, slots - 1, size)
                     };
                     let shelf = Box::new(Shelf::new([slot()?, slot()?, slot()?]));
-                    Way::Keys { shelf, next: KeyPair::default(), shown: None }
+                    let placing = Placing::new(context, &animation, index)?.map(Box::new);
+                    Way::Keys { shelf, next: KeyPair::default(), shown: None, placing }
                 }
                 Motion::Deformed(source) => {
                     let bent = Box::new(Bent::new(context, &mesh.name, mesh.positions.len(), source)?);
@@ -323,7 +326,10 @@ impl Player {
         for (mesh, moving) in self.meshes.iter_mut().enumerate() {
             match &mut moving.motion {
                 Way::Still => {}
-                Way::Keys { shelf, next, .. } => {
+                Way::Keys { shelf, next, placing, .. } => {
+                    if let Some(placing) = placing {
+                        self.animation.pose(mesh, time, &mut placing.next);
+                    }
                     let can_blend = match (shelf.slot(next.first), shelf.slot(next.second)) {
                         (Some(first), Some(second)) => {
                             Arc::ptr_eq(&first.lists.indices, &second.lists.indices) && first.size.vertices == second.size.vertices
@@ -414,8 +420,8 @@ impl Player {
             let mut is_moved = placed.first_triangle != first_triangle || placed.first_vertex != range.first;
             match &moving.motion {
                 Way::Still => {}
-                Way::Keys { shelf, next, shown } => {
-                    if *shown != Some(*next) {
+                Way::Keys { shelf, next, shown, placing } => {
+                    if *shown != Some(*next) || placing.as_ref().is_some_and(|placing| placing.next != placing.shown) {
                         work.vertices.push(index);
                     }
                     if let Some(slot) = shelf.slot(next.first) {
@@ -456,9 +462,12 @@ impl Player {
             let mut recorder = Recorder::new(context, cmd, timer);
             recorder.step("update", "copy", |cmd| {
                 scene.record_tables(context.device(), cmd);
-                for bent in work.vertices.iter().filter_map(|&index| bent(meshes, index)) {
-                    for (buffer, offset, bytes) in bent.pose_parts() {
-                        update_buffer(context.device(), cmd, buffer, offset, bytes);
+                for moving in work.vertices.iter().filter_map(|&index| meshes.get(index)) {
+                    let update = |(buffer, offset, bytes)| update_buffer(context.device(), cmd, buffer, offset, bytes);
+                    match &moving.motion {
+                        Way::Bent { bent, .. } => bent.pose_parts().into_iter().for_each(update),
+                        Way::Keys { placing: Some(placing), .. } => update(placing.pose_part()),
+                        _ => {}
                     }
                 }
             });
@@ -466,7 +475,12 @@ impl Player {
                 let (Some(moving), Some(range)) = (meshes.get(index), scene.ranges().get(index)) else { continue };
                 match &moving.motion {
                     Way::Still => {}
-                    Way::Keys { shelf, next, .. } => record_keys(&mut recorder, kernels, scene.arrays(), range, shelf, next),
+                    Way::Keys { shelf, next, placing, .. } => {
+                        record_keys(&mut recorder, kernels, scene.arrays(), range, shelf, next);
+                        if let (Some(placing), Some(slot)) = (placing, shelf.slot(next.first)) {
+                            placing.record(&mut recorder, &kernels.bend, scene.arrays(), range, slot.size.vertices);
+                        }
+                    }
                     Way::Bent { bent, .. } => bent.record(&mut recorder, &kernels.bend, scene.arrays(), range),
                 }
             }
@@ -481,7 +495,13 @@ impl Player {
         self.scene.tables_are_written();
         for &index in &work.vertices {
             match self.meshes.get_mut(index).map(|moving| &mut moving.motion) {
-                Some(Way::Keys { next, shown, .. }) => *shown = Some(*next),
+                Some(Way::Keys { next, shown, placing, .. }) => {
+                    *shown = Some(*next);
+                    if let Some(placing) = placing {
+                        let placing = &mut **placing;
+                        placing.shown.clone_from(&placing.next);
+                    }
+                }
                 Some(Way::Bent { bent, is_shown }) => {
                     let bent = &mut **bent;
                     bent.shown.clone_from(&bent.next);
@@ -572,13 +592,6 @@ fn settle(meshes: &mut [Moving], animation: &mut Animation, reply: Reply, was_wa
         shelf.settle(key, slot, result);
     }
     grown
-}
-
-fn bent(meshes: &[Moving], index: usize) -> Option<&Bent> {
-    match meshes.get(index).map(|moving| &moving.motion) {
-        Some(Way::Bent { bent, .. }) => Some(bent),
-        _ => None,
-    }
 }
 
 /// Vertices between two key-frames.
