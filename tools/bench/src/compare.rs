@@ -1,6 +1,6 @@
 //! What changed since an earlier run.
 
-use crate::report::{Comparison, Report, SceneReport, Times};
+use crate::report::{Comparison, Report, SceneReport, Spread, Times};
 use crate::table::{columns, head, number};
 
 /// Factor by which a figure changed, and by which it may have changed by chance.
@@ -8,40 +8,45 @@ use crate::table::{columns, head, number};
 struct Change {
     /// Above 1: faster than before.
     factor: f64,
-    /// The factor that the spread of the runs of both explains.
+    /// How far apart the turns of one run are: the wider of both.
     noise: f64,
-    /// The first rival that both runs had, and that the change is measured by: this takes out what the machine was doing besides.
-    by: Option<String>,
+    /// What all turns say.
+    verdict: &'static str,
+    /// What the change is measured by.
+    by: String,
 }
 
 impl Change {
+    /// By the ratio to the first rival that both runs had, which takes out what the machine was doing besides; of processor time on a CPU,
+    /// since it takes out more; else by our time. The change counts only if every turn of one run lies beyond every turn of the other, which
+    /// chance does once in 126 times with five turns each, and if it is larger than what lies between the turns of one run.
     fn of(old: &Comparison, new: &Comparison) -> Option<Change> {
         let common = old.common(new);
-        let ratios = common.and_then(|(old, new)| Some((old.ratio.filter(|ratio| *ratio > 0.0)?, new.ratio?)));
-        let by = common.filter(|_| ratios.is_some());
-        let factor = match ratios {
-            Some((old, new)) => new / old,
-            None => old.ours.median_ms / new.ours.median_ms,
+        let processor = common.and_then(|(old, new)| {
+            let by = format!("{}, processor", old.rival);
+            Some((new.processor_ratio? / old.processor_ratio?, old.processor_turns?, new.processor_turns?, by))
+        });
+        let turns = common.and_then(|(old, new)| Some((new.ratio? / old.ratio?, old.turns?, new.turns?, old.rival.clone())));
+        let times = || {
+            // As speeds: greater is faster.
+            let speeds = |times: &Times| Spread::of([times.worst_ms, times.best_ms].into_iter().map(f64::recip));
+            let factor = old.ours.median_ms / new.ours.median_ms;
+            Some((factor, speeds(&old.ours)?, speeds(&new.ours)?, "time".to_owned()))
         };
-        let spread = |times: &Times| times.median_ms / times.best_ms;
-        let rivals = by.map_or(1.0, |(old, new)| spread(&old.times) * spread(&new.times));
-        let noise = spread(&old.ours) * spread(&new.ours) * rivals;
-        let by = by.map(|(against, _)| against.rival.clone());
-        (factor.is_finite() && noise.is_finite()).then_some(Change { factor, noise, by })
-    }
-
-    fn verdict(&self) -> &'static str {
-        if self.factor > self.noise {
+        let (factor, before, now, by) = processor.or(turns).or_else(times)?;
+        let noise = before.factor().max(now.factor());
+        let verdict = if now.least > before.greatest && factor > noise {
             "faster"
-        } else if self.factor * self.noise < 1.0 {
+        } else if now.greatest < before.least && factor * noise < 1.0 {
             "slower"
         } else {
             "within the noise"
-        }
+        };
+        factor.is_finite().then_some(Change { factor, noise, verdict, by })
     }
 }
 
-/// A row for each figure that both runs have. The noise is the product of how far each median lies above its best run.
+/// A row for each figure that both runs have.
 pub fn changes(old: &Report, new: &Report) -> String {
     let mut rows = vec![head(&["scene", "", "before ms", "now", "change", "noise", "measured by", "verdict"])];
     for scene in &new.scenes {
@@ -58,8 +63,8 @@ pub fn changes(old: &Report, new: &Report) -> String {
                 number(Some(now.ours.median_ms)),
                 number(Some(change.factor)),
                 number(Some(change.noise)),
-                change.by.as_deref().unwrap_or("time").to_owned(),
-                change.verdict().to_owned(),
+                change.by,
+                change.verdict.to_owned(),
             ]);
         }
     }
@@ -84,17 +89,20 @@ mod tests {
     use crate::report::tests::comparison;
 
     #[test]
-    fn a_change_counts_beyond_the_noise_alone() {
+    fn a_change_counts_if_all_turns_say_so() {
         let of = |ms: &[f64]| comparison(ms, "Embree", &[10.0; 3]);
-        let change = |old: &[f64], new: &[f64]| Change::of(&of(old), &of(new)).map(|change| change.verdict());
+        let change = |old: &[f64], new: &[f64]| Change::of(&of(old), &of(new)).map(|change| change.verdict);
         assert_eq!(change(&[20.0, 20.0, 20.0], &[10.0, 10.0, 10.0]), Some("faster"));
+        assert_eq!(change(&[20.0, 20.0, 16.0], &[10.0, 15.0, 10.0]), Some("faster"));
         assert_eq!(change(&[10.0, 10.0, 10.0], &[20.0, 20.0, 20.0]), Some("slower"));
-        assert_eq!(change(&[10.0, 20.0, 20.0], &[15.0, 15.0, 15.0]), Some("within the noise"));
+        assert_eq!(change(&[20.0, 20.0, 14.0], &[10.0, 15.0, 10.0]), Some("within the noise"));
+        assert_eq!(change(&[20.0, 20.0, 16.0], &[15.5, 15.0, 11.0]), Some("within the noise"), "apart, but less than the turns of one");
         // A machine that is busy slows both.
         let busy = comparison(&[40.0; 3], "Embree", &[20.0; 3]);
-        let change = Change::of(&of(&[20.0; 3]), &busy);
-        assert_eq!(change, Some(Change { factor: 1.0, noise: 1.0, by: Some("Embree".to_owned()) }));
-        let other = Change::of(&comparison(&[20.0; 3], "another", &[10.0; 3]), &busy);
-        assert_eq!(other, Some(Change { factor: 0.5, noise: 1.0, by: None }));
+        let change = Change::of(&of(&[20.0; 3]), &busy).unwrap();
+        let found = (change.factor, change.noise, change.verdict, change.by.as_str());
+        assert_eq!(found, (1.0, 1.0, "within the noise", "Embree, processor"));
+        let change = Change::of(&comparison(&[20.0, 16.0], "another", &[10.0; 2]), &busy).unwrap();
+        assert_eq!((change.factor, change.noise, change.verdict, change.by.as_str()), (0.45, 1.25, "slower", "time"));
     }
 }

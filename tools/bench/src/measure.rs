@@ -311,6 +311,7 @@ fn trace(field: &mut Field<'_>, runs: u32, set: &Arc<Set>, mut alone: Option<Our
     let turns = turns(runs, &mut all, |contender| contender.trace(0))?;
     let mut runs = times(&turns);
     let alone = alone.and_then(|_| runs.pop());
+    let ours = runs.first().cloned().unwrap_or_default();
     let time = field.compare(&runs, true);
     let hits = field.ours.answers(0)?.hits;
     let differences = field.rivals.iter_mut().map(|rival| Ok(difference(rival.name(), &set.rays, &hits, &rival.answers(0)?)));
@@ -325,7 +326,7 @@ fn trace(field: &mut Field<'_>, runs: u32, set: &Arc<Set>, mut alone: Option<Our
         unfinished: count(|hit| hit.triangle == UNFINISHED),
         mrays: time.ours.mrays(rays),
         walk: (set.query == Query::Closest).then(|| walks(field.ours.grid(), set)).transpose()?,
-        alone: alone.map(|runs| Against::of(&time.ours, &RivalRuns { name: "the object alone", runs: &runs, is_sampled: false }, is_cpu)),
+        alone: alone.map(|runs| Against::of(&ours, &RivalRuns { name: "the object alone", runs: &runs, is_sampled: false }, is_cpu)),
         time,
         differences,
     })

@@ -290,6 +290,42 @@ pub struct Against {
     /// Likewise by processor time, where the device is a CPU: what a busy machine disturbs least. None for a rival that has traced a part of
     /// the rays.
     pub processor_ratio: Option<f64>,
+    /// The ratios of the turns, each of which has a run of ours and one of the rival's.
+    pub turns: Option<Spread>,
+    /// Likewise by processor time.
+    pub processor_turns: Option<Spread>,
+}
+
+/// The ends of what was measured again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Least.
+    pub least: f64,
+    /// Greatest.
+    pub greatest: f64,
+}
+
+impl Spread {
+    /// Of some numbers; none where one is not finite, or not above 0, or there is none.
+    pub fn of(numbers: impl Iterator<Item = f64>) -> Option<Spread> {
+        let widen = |spread: Option<Spread>, x: f64| {
+            let Spread { least, greatest } = spread.unwrap_or(Spread { least: x, greatest: x });
+            Some(Spread { least: least.min(x), greatest: greatest.max(x) })
+        };
+        let mut all = None;
+        for number in numbers {
+            if !(number > 0.0 && number.is_finite()) {
+                return None;
+            }
+            all = widen(all, number);
+        }
+        all
+    }
+
+    /// How far apart the ends are.
+    pub fn factor(&self) -> f64 {
+        self.greatest / self.least
+    }
 }
 
 /// Milliseconds over the runs.
@@ -355,16 +391,20 @@ pub fn median(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 impl Against {
-    /// Compares our times to a rival's.
-    pub fn of(ours: &Times, rival: &RivalRuns<'_>, device_is_cpu: bool) -> Against {
-        let times = Times::of(rival.runs);
+    /// Compares our runs to a rival's.
+    pub fn of(runs: &[Run], rival: &RivalRuns<'_>, device_is_cpu: bool) -> Against {
+        let (ours, times) = (Times::of(runs), Times::of(rival.runs));
+        let has_processor = device_is_cpu && !rival.is_sampled;
+        let turns = |of: fn(&Run) -> f64| Spread::of(runs.iter().zip(rival.runs).map(|(ours, theirs)| of(theirs) / of(ours)));
         let ratio = |ours: f64, theirs: f64| (ours > 0.0).then_some(theirs / ours);
         Against {
             rival: rival.name.to_owned(),
             times,
             ratio: ratio(ours.median_ms, times.median_ms),
             best_ratio: ratio(ours.best_ms, times.best_ms),
-            processor_ratio: ratio(ours.processor_ms, times.processor_ms).filter(|_| device_is_cpu && !rival.is_sampled),
+            processor_ratio: ratio(ours.processor_ms, times.processor_ms).filter(|_| has_processor),
+            turns: turns(|run| run.ms),
+            processor_turns: turns(|run| run.processor_ms).filter(|_| has_processor),
         }
     }
 }
@@ -372,8 +412,8 @@ impl Against {
 impl Comparison {
     /// Compares our runs to those of each rival.
     pub fn of(ours: &[Run], rivals: &[RivalRuns<'_>], device_is_cpu: bool) -> Comparison {
-        let ours = Times::of(ours);
-        Comparison { ours, rivals: rivals.iter().map(|rival| Against::of(&ours, rival, device_is_cpu)).collect() }
+        let rivals = rivals.iter().map(|rival| Against::of(ours, rival, device_is_cpu));
+        Comparison { rivals: rivals.collect(), ours: Times::of(ours) }
     }
 
     /// A rival by its name.
@@ -457,9 +497,12 @@ pub mod tests {
     fn above_one_is_faster() {
         let against = comparison(&[10.0, 20.0, 12.0], "Embree", &[24.0, 5.0, 30.0]).rivals.remove(0);
         assert_eq!((against.ratio, against.best_ratio, against.processor_ratio), (Some(2.0), Some(0.5), Some(2.0)));
+        let spread = Some(Spread { least: 0.25, greatest: 2.5 });
+        assert_eq!((against.turns, against.processor_turns), (spread, spread));
+        assert_eq!(Spread::of([1.0, f64::NAN].into_iter()), None);
         let of = |device_is_cpu, is_sampled| {
             let rival = RivalRuns { name: "slow", runs: &runs(&[1.0]), is_sampled };
-            Against::of(&Times::of(&runs(&[1.0])), &rival, device_is_cpu).processor_ratio
+            Against::of(&runs(&[1.0]), &rival, device_is_cpu).processor_ratio
         };
         assert_eq!((of(true, false), of(false, false), of(true, true)), (Some(1.0), None, None));
         assert!(Comparison::of(&runs(&[1.0]), &[], true).rivals.is_empty());
