@@ -139,7 +139,10 @@ pub mod integrating {}
 pub use ash;
 pub use error::{Error, Result};
 pub use gridwalk_core;
-pub use gridwalk_core::geometry::MAX_GEOMETRIES;
+pub use gridwalk_core::geometry::{
+    FLAG_FLIP_FACING, FLAG_TWO_SIDED, FORMAT_FLOAT16X4, FORMAT_FLOAT32X3, FORMAT_SNORM16X4, INDEX_NONE, INDEX_UINT16, INDEX_UINT32,
+    MAX_GEOMETRIES,
+};
 pub use gridwalk_core::{GeometryRecord, Hit, MISS, Ray, Report, UNFINISHED, kernel};
 pub use requirements::requirements;
 pub use shape::{Shape, split_workgroups};

@@ -24,7 +24,7 @@ pub struct DeviceDesc<'a> {
     pub instance: &'a ash::Instance,
     /// Physical device of the device.
     pub physical_device: vk::PhysicalDevice,
-    /// Device with the features of [`requirements`] enabled.
+    /// Device with the features of [`requirements()`] enabled.
     pub device: &'a ash::Device,
     /// Cache for the pipelines, or null.
     pub pipeline_cache: vk::PipelineCache,
@@ -308,7 +308,7 @@ impl Tracer {
     /// [`Error::Unsuitable`] names all that the physical device lacks; [`Error::Option`] for a shape that cannot be; [`Error::Vulkan`].
     ///
     /// # Safety
-    /// The handles are valid, and of each other. The device has the features of [`requirements`] enabled and outlives the tracer. All work
+    /// The handles are valid, and of each other. The device has the features of [`requirements()`] enabled and outlives the tracer. All work
     /// that was recorded with the tracer has ended when it is dropped.
     pub unsafe fn new(desc: &DeviceDesc) -> Result<Tracer> {
         // SAFETY: the caller's contract.
