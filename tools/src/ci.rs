@@ -42,7 +42,7 @@ enum Outcome {
 }
 
 /// The full test suite comes last, so that its closing line is the last thing before the summary.
-const STEPS: [Step; 14] = [
+const STEPS: [Step; 15] = [
     Step { name: "format", about: "rustfmt has nothing to change", run: format },
     Step { name: "clippy", about: "no warning in any crate, test or tool", run: clippy },
     Step { name: "doc", about: "documentation builds without a warning", run: doc },
@@ -52,6 +52,7 @@ const STEPS: [Step; 14] = [
     Step { name: "slang", about: "the include in Slang compiles, to what is committed", run: check_slang },
     Step { name: "api", about: "the library's public interface is as kept in docs/api", run: check_api },
     Step { name: "package", about: "each crate packs", run: package },
+    Step { name: "msrv", about: "the published crates compile with the oldest Rust that they promise", run: msrv },
     Step { name: "cross", about: "the program and the libraries compile for Windows and macOS", run: cross },
     Step { name: "matrix", about: "lavapipe's vector widths and thread counts: the tests pass on each", run: matrix },
     Step { name: "pictures", about: "the same: four pictures are equal bit for bit", run: pictures },
@@ -179,12 +180,32 @@ fn package(root: &Root) -> Result<Outcome> {
     let mut command = cargo(root, &["package", "--offline", "--allow-dirty", "--no-verify"]);
     // All in crates/ are published, and nothing else: a test sees to it.
     for folder in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
-        let manifest = folder?.path().join("Cargo.toml");
-        let text = fs::read_to_string(&manifest).with_context(|| format!("{}: cannot be read", manifest.display()))?;
-        let name = text.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'));
-        command.arg("--package").arg(name.with_context(|| format!("{}: no name", manifest.display()))?);
+        command.arg("--package").arg(package_name(&folder?.path().join("Cargo.toml"))?);
     }
     passed(&mut command)
+}
+
+fn msrv(root: &Root) -> Result<Outcome> {
+    let text = fs::read_to_string(root.join("Cargo.toml")).context("Cargo.toml: cannot be read")?;
+    let version = text.lines().find_map(|line| line.strip_prefix("rust-version = \"")?.strip_suffix('"'));
+    let toolchain = format!("+{}.0", version.context("Cargo.toml: no rust-version")?);
+    if process::output(Command::new("cargo").args([&toolchain, "--version"])).is_err() {
+        let why = format!("Rust {0} is not installed: rustup toolchain install {0} --profile minimal", &toolchain[1..]);
+        return Ok(Outcome::Skipped(why));
+    }
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("msrv");
+    let mut command = cargo(root, &[&toolchain, "check", "--locked"]);
+    for folder in fs::read_dir(root.join("crates")).context("crates/: cannot be listed")? {
+        command.arg("--package").arg(package_name(&folder?.path().join("Cargo.toml"))?);
+    }
+    passed(command.arg("--target-dir").arg(target))
+}
+
+/// The name in a manifest.
+fn package_name(manifest: &Path) -> Result<String> {
+    let text = fs::read_to_string(manifest).with_context(|| format!("{}: cannot be read", manifest.display()))?;
+    let name = text.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'));
+    Ok(name.with_context(|| format!("{}: no name", manifest.display()))?.to_owned())
 }
 
 /// Systems that nothing here can run on: that all compiles is all that is known of them.
