@@ -61,20 +61,20 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
 
     // An encoder that fails ends the rendering too: its error is the cause.
     let ended = written.result.and(rendered);
-    let mut summary = Summary::new(&session, &animate, &settings, rate, &written.lines);
+    let mut summary = Summary::new(&session, &animate, &settings, rate, &written.tally);
     summary.skipped = frames.len() - missing.len();
     summary.outputs = written.outputs;
     summary.interrupted = matches!(ended, Ok(Ended::Interrupted));
     summary.error = ended.as_ref().err().map(|failure| crate::sentence(&failure.error));
     summary.seconds(begun.elapsed().as_secs_f64(), session.seconds());
     if animate.reports.stats {
-        eprint!("{}", report::table(&summary, &written.lines));
+        eprint!("{}", report::table(&summary, &written.tally.rows));
     }
     if animate.reports.json {
         output::print_json(&summary)?;
     }
     if ended? == Ended::Interrupted {
-        tracing::warn!("interrupted: {} of {} frames are done", written.lines.len(), missing.len());
+        tracing::warn!("interrupted: {} of {} frames are done", written.tally.frames, missing.len());
         return Ok(interrupt.exit());
     }
     for name in &summary.outputs {

@@ -139,10 +139,47 @@ impl FrameLine {
     }
 }
 
-impl FrameLine {
-    /// Leaves out what only the frame's own line tells: a run may have a million of them.
-    pub fn condensed(self) -> FrameLine {
-        FrameLine { outputs: Vec::new(), build_steps: Vec::new(), heatmap: None, ..self }
+/// A frame's row in the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    frame: u64,
+    triangles: u64,
+    times: Times,
+}
+
+/// What is known of the frames so far; a run may have millions of them.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    pub frames: usize,
+    rebuilt: usize,
+    key_frames: u64,
+    grown: u64,
+    last_grown: Option<u64>,
+    rays: u64,
+    unfinished: u64,
+    times: Times,
+    /// With `--stats` alone.
+    pub rows: Vec<Row>,
+}
+
+impl Tally {
+    /// Adds a frame; `in_table` keeps its row.
+    pub fn add(&mut self, line: &FrameLine, in_table: bool) {
+        if self.frames == 0 {
+            self.times = line.times;
+        } else {
+            self.times.add(&line.times);
+        }
+        self.frames += 1;
+        self.rebuilt += usize::from(line.rebuilt);
+        self.key_frames += u64::from(line.key_frames);
+        self.grown += u64::from(line.grown);
+        self.last_grown = if line.grown > 0 { Some(line.frame) } else { self.last_grown };
+        self.rays += line.rays;
+        self.unfinished += line.unfinished;
+        if in_table {
+            self.rows.push(Row { frame: line.frame, triangles: line.triangles, times: line.times });
+        }
     }
 }
 
@@ -180,23 +217,9 @@ pub struct Summary {
 
 impl Summary {
     /// Sums up; how it ended is still to be filled in.
-    pub fn new(session: &Session, animate: &high::Animate, settings: &RenderSettings, rate: Rate, lines: &[FrameLine]) -> Summary {
+    pub fn new(session: &Session, animate: &high::Animate, settings: &RenderSettings, rate: Rate, tally: &Tally) -> Summary {
         let (device, grid) = (session.context.device_info(), session.player.grid().stats());
-        let known = lines.first().map_or_else(Times::default, |line| {
-            let zero = |known: Option<f64>| known.map(|_| 0.0);
-            let Times { deform_ms, rebuild_ms, trace_ms, shade_ms, .. } = line.times;
-            Times {
-                deform_ms: zero(deform_ms),
-                rebuild_ms: zero(rebuild_ms),
-                trace_ms: zero(trace_ms),
-                shade_ms: zero(shade_ms),
-                ..Times::default()
-            }
-        });
-        let times = lines.iter().fold(known, |mut sum, line| {
-            sum.add(&line.times);
-            sum
-        });
+        let Tally { frames, rebuilt, key_frames, grown, last_grown, rays, unfinished, times, .. } = *tally;
         Summary {
             header: Header::new("animate"),
             scene: animate.source.name(),
@@ -207,17 +230,17 @@ impl Summary {
             size: [settings.width, settings.height],
             spp: settings.spp,
             fps: rate.per_second(),
-            frames: lines.len(),
+            frames,
             skipped: 0,
             interrupted: false,
             error: None,
             outputs: Vec::new(),
-            rebuilt: lines.iter().filter(|line| line.rebuilt).count(),
-            key_frames: lines.iter().map(|line| u64::from(line.key_frames)).sum(),
-            grown: lines.iter().map(|line| u64::from(line.grown)).sum(),
-            last_grown: lines.iter().rfind(|line| line.grown > 0).map(|line| line.frame),
-            rays: lines.iter().map(|line| line.rays).sum(),
-            unfinished: lines.iter().map(|line| line.unfinished).sum(),
+            rebuilt,
+            key_frames,
+            grown,
+            last_grown,
+            rays,
+            unfinished,
             grid_bytes: grid.grid_bytes,
             scratch_bytes: grid.scratch_bytes,
             times,
@@ -234,7 +257,7 @@ impl Summary {
 }
 
 /// The table of `--stats`: a row a frame, then sums.
-pub fn table(summary: &Summary, lines: &[FrameLine]) -> String {
+pub fn table(summary: &Summary, rows: &[Row]) -> String {
     let row = |name: &str, triangles: &str, times: &Times| {
         let cell = |(name, ms): (&str, Option<f64>)| {
             let width = name.len().max(9);
@@ -245,7 +268,7 @@ pub fn table(summary: &Summary, lines: &[FrameLine]) -> String {
     let head: Vec<String> = Times::default().columns().iter().map(|(name, _)| format!("{name:>9}")).collect();
     // Writing to a string cannot fail.
     let mut text = format!("{:>8} {:>10} {}\n", "frame", "triangles", head.join(" "));
-    for line in lines {
+    for line in rows {
         text.push_str(&row(&line.frame.to_string(), &line.triangles.to_string(), &line.times));
     }
     text.push_str(&row("all (ms)", "", &summary.times));

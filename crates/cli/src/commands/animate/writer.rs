@@ -7,7 +7,7 @@ use std::time::Instant;
 use gridwalk_render::Layers;
 use gridwalk_render::image::{Format, Metadata, MovieDesc, MovieWriter, Overwrite, Rate, Rgb8, encode_exr, encode_png, write_file};
 
-use super::report::FrameLine;
+use super::report::{FrameLine, Tally};
 use crate::args::high::{self, AnimationOutput, Target};
 use crate::args::pattern::Pattern;
 use crate::exit::Result;
@@ -24,8 +24,8 @@ pub struct Job {
 /// What has been written.
 #[derive(Debug)]
 pub struct Written {
-    /// One a frame, in their order.
-    pub lines: Vec<FrameLine>,
+    /// What is known of the frames.
+    pub tally: Tally,
     /// Movies, and patterns of sequences of which there are frames.
     pub outputs: Vec<String>,
     pub result: Result<()>,
@@ -37,6 +37,7 @@ pub struct Writer<'a> {
     overwrite: Overwrite,
     skip_existing: bool,
     json: bool,
+    stats: bool,
     sinks: Vec<Sink<'a>>,
 }
 
@@ -63,7 +64,14 @@ impl<'a> Writer<'a> {
                 }
             }
         }
-        Ok(Writer { shown, overwrite: animate.overwrite, skip_existing: animate.skip_existing, json: animate.reports.json, sinks })
+        Ok(Writer {
+            shown,
+            overwrite: animate.overwrite,
+            skip_existing: animate.skip_existing,
+            json: animate.reports.json,
+            stats: animate.reports.stats,
+            sinks,
+        })
     }
 
     /// Whether some output lacks a frame.
@@ -80,10 +88,10 @@ impl<'a> Writer<'a> {
 
     /// Writes frames as long as there come any, and then ends the movies. After an error there will be no movie.
     pub fn run(mut self, frames: Receiver<Job>) -> Written {
-        let mut written = Written { lines: Vec::new(), outputs: Vec::new(), result: Ok(()) };
+        let mut written = Written { tally: Tally::default(), outputs: Vec::new(), result: Ok(()) };
         for job in frames {
             match self.write(job) {
-                Ok(line) => written.lines.push(line.condensed()),
+                Ok(line) => written.tally.add(&line, self.stats),
                 Err(failure) => {
                     written.result = Err(failure);
                     return written;
@@ -92,7 +100,7 @@ impl<'a> Writer<'a> {
         }
         for sink in self.sinks {
             match sink {
-                _ if written.lines.is_empty() => {}
+                _ if written.tally.frames == 0 => {}
                 Sink::Sequence { pattern, .. } => written.outputs.push(pattern.to_string()),
                 Sink::Movie { name, movie } => match movie.finish() {
                     Ok(()) => written.outputs.push(name),
