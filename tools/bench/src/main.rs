@@ -84,7 +84,9 @@ fn start(arguments: &Arguments) -> Result<ExitCode> {
             write(common, &report, &report.table())?;
         }
         Some(Mode::Growth(growth)) => {
-            let report = run(&growth.sizes())?;
+            let mut report = run(&growth.sizes())?;
+            // Of sizes, which are no scenes of a kind.
+            report.means.clear();
             draw(growth.plot.as_deref(), || Some(plot::growth(&report.setup, &growth::series(&report))))?;
             write(common, &report, &(report.table(None) + &growth::slopes(&report)))?;
         }

@@ -158,15 +158,21 @@ pub fn growth(setup: &Setup, all: &[Series]) -> String {
             picture.line([corner[0], y], [corner[0] + PANEL, y], "#dddddd");
             picture.text(corner[0] - 4.0, y + 4.0, "end", &power(exponent));
         }
+        let mut labels: Vec<(f64, f64, &str)> = Vec::new();
         for (line, (who, points)) in series.lines.iter().enumerate() {
             let (_, colour) = COLOURS[line % COLOURS.len()];
             for pair in points.windows(2) {
                 picture.line(at(&pair[0]), at(&pair[1]), colour);
             }
-            if let Some(last) = points.last() {
-                let [x, y] = at(last);
-                picture.text(x + 4.0, y + 4.0, "start", who);
-            }
+            labels.extend(points.last().map(at).map(|[x, y]| (y, x, who.as_str())));
+        }
+        // One below the other, where lines end close together.
+        labels.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut free = f64::NEG_INFINITY;
+        for (y, x, who) in labels {
+            let y = y.max(free);
+            picture.text(x + 4.0, y + 4.0, "start", who);
+            free = y + 11.0;
         }
     }
     let rows = all.len().div_ceil(ACROSS);
