@@ -332,8 +332,10 @@ void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader gri
 ivec3 gridwalk_walk_cell_at(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
     precise vec3 travelled = s * walk.ray.direction;
     precise vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
-    // Clamped as floats: a conversion out of range may give anything.
-    return ivec3(min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0)));
+    // Clamped as floats: a conversion out of range may give anything. Added to 2^23, a whole number is the mantissa; drivers that run on a
+    // CPU convert to integers one invocation at a time.
+    precise vec3 clamped = min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0));
+    return ivec3(floatBitsToUint(clamped + vec3(8388608.0)) & uvec3(0x7FFFFFu));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
