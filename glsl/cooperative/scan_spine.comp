@@ -3,7 +3,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// One workgroup scans the tiles' sums in place.
+// One workgroup scans the tiles' sums in place; the sum of all is wanted of the first digit table.
 
 #include "shared/scan.glsl"
 
@@ -13,6 +13,7 @@ layout(constant_id = 2) const uint SCAN_TILE = 4096;
 layout(push_constant, std430) uniform ScanSpine {
     StateIn state;
     UintsInOut partials;
+    StateOut kept; // the same state, of which one word is written
     uint which;
 };
 
@@ -35,5 +36,8 @@ void main() {
             before = saturating_add(before, value);
         }
         carry = saturating_add(carry, total);
+    }
+    if (which == SCAN_FIRST_TABLE && gl_LocalInvocationID.x == 0u) {
+        kept.state.kept_count = carry;
     }
 }

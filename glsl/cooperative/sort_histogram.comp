@@ -3,7 +3,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// How often each digit occurs in a tile of keys.
+// How often each digit occurs in a tile of keys that have a cell.
 
 #include "shared/sort.glsl"
 
@@ -18,16 +18,18 @@ layout(push_constant, std430) uniform SortHistogram {
 void main() {
     uint tile = workgroup_index();
     uint tile_size = gl_WorkGroupSize.x * KEYS_EACH;
-    uint pair_count = state.state.pair_count;
+    uint pair_count = pairs_of(state, pass);
+    uint bits = state.state.digit_bits;
+    uint sentinel = state.state.sentinel;
     uint tile_count = (pair_count + tile_size - 1u) / tile_size;
     if (tile >= tile_count) {
         return;
     }
     UintsIn keys = UintsIn(writes_a(state.state.pass_count, pass) ? uvec2(keys_a) : uvec2(keys_b));
     uint first = tile * tile_size + gl_LocalInvocationID.x * KEYS_EACH;
-    count_run(keys, pass, first, min(first + KEYS_EACH, pair_count));
+    count_run(keys, pass, bits, sentinel, first, min(first + KEYS_EACH, pair_count));
     barrier();
-    for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += gl_WorkGroupSize.x) {
+    for (uint digit = gl_LocalInvocationID.x; digit < 1u << bits; digit += gl_WorkGroupSize.x) {
         uint sum = 0u;
         for (uint column = 0u; column < gl_WorkGroupSize.x; ++column) {
             sum += counter[digit * gl_WorkGroupSize.x + column];

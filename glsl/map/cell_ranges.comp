@@ -20,23 +20,20 @@ layout(push_constant, std430) uniform CellRanges {
 
 void main() {
     uint pair = invocation_index();
-    uint pair_count = state.state.pair_count;
+    uint pair_count = state.state.kept_count;
     if (pair >= pair_count) {
         return;
     }
-    uint sentinel = grid.header.cell_count;
+    uint none = grid.header.cell_count;
     uint key = keys.word[pair];
-    if (key == sentinel) {
-        return;
-    }
     if (pair == 0u || keys.word[pair - 1u] != key) {
         cells.word[2u * key] = pair;
     }
-    uint next = pair + 1u < pair_count ? keys.word[pair + 1u] : sentinel;
+    uint next = pair + 1u < pair_count ? keys.word[pair + 1u] : none;
     if (next != key) {
         cells.word[2u * key + 1u] = pair + 1u;
     }
-    if (next == sentinel) {
+    if (next == none) {
         report.report.pairs = pair + 1u;
     }
 }

@@ -13,7 +13,7 @@
 layout(local_size_x = 1) in;
 
 layout(constant_id = 1) const uint MAP_SIZE = 64;
-layout(constant_id = 2) const uint SORT_BITS = 8;
+layout(constant_id = 2) const uint SORT_BITS = 10;
 layout(constant_id = 3) const uint BRICK_TILE = 1024;
 
 layout(push_constant, std430) uniform Configure {
@@ -32,7 +32,7 @@ layout(push_constant, std430) uniform Configure {
     uint fixed_x; // 0: by density
     uint fixed_y;
     uint fixed_z;
-    uint exact; // 1: cells that a triangle's box alone overlaps get the sentinel key
+    uint exact; // 1: cells that a triangle's large box alone overlaps get the sentinel key
 };
 
 const float MAX_RESOLUTION = 4096.0;
@@ -162,9 +162,12 @@ void main() {
     header.reserved = 0u;
     grid.header = header;
 
-    uint largest_key = exact != 0u ? cell_count : cell_count - 1u;
+    uint largest_key = cell_count - 1u;
     next.key_bits = largest_key == 0u ? 0u : uint(findMSB(largest_key)) + 1u;
     next.pass_count = (next.key_bits + SORT_BITS - 1u) / SORT_BITS;
+    // No wider than that many passes need.
+    next.digit_bits = next.pass_count == 0u ? 0u : (next.key_bits + next.pass_count - 1u) / next.pass_count;
+    next.sentinel = exact != 0u ? cell_count : SATURATED;
     next.overflow = overflow;
     state.state = next;
 

@@ -3,20 +3,22 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// Brings a triangle into the grid's frame and counts the cells that its box overlaps. The entry after the last triangle is zero, so that
-// the scan leaves the total there.
+// Brings a triangle into the grid's frame and counts its cells: of a small box those that it overlaps, a bit of its mask each, of a large
+// one all; that has no bit. The count after the last triangle is zero, so that the scan leaves the total there.
 
 #include "shared/gather.glsl"
 #include "shared/overlap.glsl"
 
 layout(local_size_x_id = 0) in;
 layout(local_size_x = 64) in;
+layout(constant_id = 1) const bool EXACT = false;
 
 layout(push_constant, std430) uniform OverlapCount {
     GridwalkGrid grid;
-    StateIn state;
+    StateInOut state;
     TriangleWordsInOut triangles;
     UintsOut counts;
+    UintsOut masks;
 };
 
 void main() {
@@ -31,6 +33,7 @@ void main() {
     }
     uvec4 first = triangles.vertex[3u * triangle];
     uint count = 0u;
+    uint mask = 0u;
     if ((first.w & TRIANGLE_DROPPED) == 0u) {
         GridHeader header = grid.header;
         uvec4 second = triangles.vertex[3u * triangle + 1u];
@@ -38,12 +41,24 @@ void main() {
         vec3 v0 = to_frame(header, uintBitsToFloat(first.xyz));
         vec3 v1 = to_frame(header, uintBitsToFloat(second.xyz));
         vec3 v2 = to_frame(header, uintBitsToFloat(third.xyz));
-        CellBox box = triangle_cells(header, v0, v1, v2);
-        uvec3 size = box.high - box.low + uvec3(1u);
-        count = size.x * size.y * size.z;
         triangles.vertex[3u * triangle] = uvec4(floatBitsToUint(v0), first.w);
         triangles.vertex[3u * triangle + 1u] = uvec4(floatBitsToUint(v1), second.w);
         triangles.vertex[3u * triangle + 2u] = uvec4(floatBitsToUint(v2), third.w);
+        CellBox box = triangle_cells(header, v0, v1, v2);
+        count = cells_of(box);
+        if (count > SMALL_BOX) {
+            state.state.has_large = 1u;
+        } else if (!EXACT || is_row(box)) {
+            mask = 0xFFFFFFFFu >> (SMALL_BOX - count);
+        } else {
+            uvec3 cell = box.low;
+            for (uint i = 0u; i < count; ++i) {
+                mask |= uint(triangle_overlaps_cell(header, v0, v1, v2, cell)) << i;
+                cell = next_cell(box, cell);
+            }
+            count = uint(bitCount(mask));
+        }
     }
     counts.word[triangle] = count;
+    masks.word[triangle] = mask;
 }

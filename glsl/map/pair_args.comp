@@ -10,10 +10,9 @@
 layout(local_size_x = 1) in;
 
 layout(constant_id = 1) const uint MAP_SIZE = 64;
-layout(constant_id = 2) const uint SORT_BITS = 8;
-layout(constant_id = 3) const uint SORT_TILE = 4096;
-layout(constant_id = 4) const uint SCAN_TILE = 4096;
-layout(constant_id = 5) const uint PAIRS_EACH = 16;
+layout(constant_id = 2) const uint SORT_TILE = 8192;
+layout(constant_id = 3) const uint SCAN_TILE = 4096;
+layout(constant_id = 4) const uint PAIRS_EACH = 16;
 
 layout(push_constant, std430) uniform PairArgs {
     StateInOut state;
@@ -29,15 +28,17 @@ void main() {
     uint count = min(total, pair_capacity);
     uint overflow = state.state.overflow | (total > pair_capacity ? OVERFLOW_PAIRS : 0u);
     uint tiles = (count + SORT_TILE - 1u) / SORT_TILE;
-    uint table_count = tiles << SORT_BITS;
+    uint table_count = tiles << state.state.digit_bits;
     state.state.pair_total = total;
     state.state.pair_count = count;
+    state.state.kept_count = count; // until the first pass counts
     state.state.table_count = table_count;
     state.state.overflow = overflow;
     report.report.pair_total = total;
     report.report.overflow = overflow;
 
-    arguments.arguments.emit = uvec4(split_workgroups((count + PAIRS_EACH - 1u) / PAIRS_EACH, MAP_SIZE), 0u);
+    uvec3 runs = split_workgroups((count + PAIRS_EACH - 1u) / PAIRS_EACH, MAP_SIZE);
+    arguments.arguments.emit_large = state.state.has_large != 0u ? uvec4(runs, 0u) : uvec4(0u);
     arguments.arguments.cell_ranges = uvec4(split_workgroups(count, MAP_SIZE), 0u);
     for (uint pass = 0u; pass < pass_capacity; ++pass) {
         bool used = pass < state.state.pass_count && count > 0u;

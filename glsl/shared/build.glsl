@@ -12,13 +12,17 @@ const uint SATURATED = 0xFFFFFFFFu;
 struct BuildState {
     uint triangle_count;
     uint offset_count; // triangle_count + 1
-    uint pair_total; // cells in all triangles' boxes, saturating
+    uint pair_total; // cells of all triangles, saturating
     uint pair_count; // at most the capacity
     uint key_bits;
     uint pass_count; // digits in use
     uint table_count; // entries of the digit table
     uint overflow; // OVERFLOW_* bits
     uint triangle_total; // of all geometries, saturating; triangle_count is at most the capacity
+    uint digit_bits; // of each pass
+    uint has_large; // 1: some triangle's box holds more cells than a mask has bits
+    uint kept_count; // pairs with a cell: the first pass of the sort leaves the others behind
+    uint sentinel; // key of a pair without a cell
     uint reserved[3];
 };
 
@@ -30,7 +34,7 @@ const uint OVERFLOW_TRIANGLES = 4u;
 // use has zero groups.
 struct DispatchArguments {
     uvec4 clear_cells;
-    uvec4 emit;
+    uvec4 emit_large;
     uvec4 sort[MAX_PASSES];
     uvec4 table_scan[MAX_PASSES];
     uvec4 table_spine[MAX_PASSES];

@@ -64,6 +64,10 @@ vec3 boundary(vec3 box_min, vec3 cell_size, vec3 i) {
     return box_min + offset;
 }
 
+// Of whole numbers in [0, 2^23): added to 2^23 they are the mantissa. Drivers that run on a CPU convert floats to integers one invocation
+// at a time.
+uvec3 whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
+
 uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
 
 #endif

@@ -19,8 +19,8 @@ CellBox overlapped_box(GridHeader grid, vec3 low, vec3 high) {
     first -= vec3(greaterThan(boundary(grid.box_min, grid.cell_size, first), low));
     end += vec3(lessThanEqual(boundary(grid.box_min, grid.cell_size, end + vec3(1.0)), high));
     CellBox box;
-    box.low = uvec3(max(first, vec3(0.0)));
-    box.high = uvec3(min(end, last));
+    box.low = whole(max(first, vec3(0.0)));
+    box.high = whole(min(end, last));
     return box;
 }
 
@@ -32,14 +32,40 @@ CellBox triangle_cells(GridHeader grid, vec3 v0, vec3 v1, vec3 v2) {
     return overlapped_box(grid, low, high);
 }
 
-// Whether `axis` parts the triangle from a box of the given half size around the origin. All three vertices are projected: the edge's
-// two are equal only for an exact axis, and a rounded axis must stay a valid one.
-bool separates(vec3 axis, vec3 half_size, vec3 v0, vec3 v1, vec3 v2) {
-    float p0 = axis.x * v0.x + axis.y * v0.y + axis.z * v0.z;
-    float p1 = axis.x * v1.x + axis.y * v1.y + axis.z * v1.z;
-    float p2 = axis.x * v2.x + axis.y * v2.y + axis.z * v2.z;
-    float reach = abs(axis.x) * half_size.x + abs(axis.y) * half_size.y + abs(axis.z) * half_size.z;
-    return min(p0, min(p1, p2)) > reach || max(p0, max(p1, p2)) < -reach;
+// Cells of a box whose overlap is told by one word. A box of more cells is a large one.
+const uint SMALL_BOX = 32u;
+
+uint cells_of(CellBox box) {
+    uvec3 size = box.high - box.low + uvec3(1u);
+    return size.x * size.y * size.z;
+}
+
+// The next cell of a box, x fastest.
+uvec3 next_cell(CellBox box, uvec3 cell) {
+    cell.x += 1u;
+    bool row = cell.x > box.high.x;
+    cell.x = row ? box.low.x : cell.x;
+    cell.y += uint(row);
+    bool slice = cell.y > box.high.y;
+    cell.y = slice ? box.low.y : cell.y;
+    cell.z += uint(slice);
+    return cell;
+}
+
+// A box of one row of cells is met by its triangle in each of them.
+bool is_row(CellBox box) {
+    uvec3 same = uvec3(equal(box.low, box.high));
+    return same.x + same.y + same.z >= 2u;
+}
+
+// Whether the axis at right angles to an edge of a triangle and to a box axis parts the triangle from a box of the given half size around
+// the origin, in the plane of the two other box axes. `a` is an end of the edge, `c` the corner across: the ends are projected to the same
+// point but for rounding.
+bool separates(vec2 edge, vec2 half_size, vec2 a, vec2 c) {
+    float p = edge.x * a.y - edge.y * a.x;
+    float q = edge.x * c.y - edge.y * c.x;
+    float reach = abs(edge.y) * half_size.x + abs(edge.x) * half_size.y;
+    return min(p, q) > reach || max(p, q) < -reach;
 }
 
 // Separating axes: the triangle's normal and the nine products of an edge and a box axis; the box axes are overlapped_box's. The box is
@@ -55,18 +81,20 @@ bool triangle_overlaps_cell(GridHeader grid, vec3 v0, vec3 v1, vec3 v2, uvec3 ce
     vec3 e0 = b - a;
     vec3 e1 = c - b;
     vec3 e2 = a - c;
+    // No operator that leaves the rest out: that would be a branch for each.
+    bvec3 apart_x = bvec3(separates(e0.yz, half_size.yz, a.yz, c.yz), separates(e1.yz, half_size.yz, b.yz, a.yz),
+                          separates(e2.yz, half_size.yz, c.yz, b.yz));
+    bvec3 apart_y = bvec3(separates(e0.zx, half_size.zx, a.zx, c.zx), separates(e1.zx, half_size.zx, b.zx, a.zx),
+                          separates(e2.zx, half_size.zx, c.zx, b.zx));
+    bvec3 apart_z = bvec3(separates(e0.xy, half_size.xy, a.xy, c.xy), separates(e1.xy, half_size.xy, b.xy, a.xy),
+                          separates(e2.xy, half_size.xy, c.xy, b.xy));
     vec3 normal = vec3(e0.y * e1.z - e0.z * e1.y, e0.z * e1.x - e0.x * e1.z, e0.x * e1.y - e0.y * e1.x);
-    bool apart = separates(normal, half_size, a, b, c);
-    apart = apart || separates(vec3(0.0, -e0.z, e0.y), half_size, a, b, c);
-    apart = apart || separates(vec3(0.0, -e1.z, e1.y), half_size, a, b, c);
-    apart = apart || separates(vec3(0.0, -e2.z, e2.y), half_size, a, b, c);
-    apart = apart || separates(vec3(e0.z, 0.0, -e0.x), half_size, a, b, c);
-    apart = apart || separates(vec3(e1.z, 0.0, -e1.x), half_size, a, b, c);
-    apart = apart || separates(vec3(e2.z, 0.0, -e2.x), half_size, a, b, c);
-    apart = apart || separates(vec3(-e0.y, e0.x, 0.0), half_size, a, b, c);
-    apart = apart || separates(vec3(-e1.y, e1.x, 0.0), half_size, a, b, c);
-    apart = apart || separates(vec3(-e2.y, e2.x, 0.0), half_size, a, b, c);
-    return !apart;
+    float p0 = normal.x * a.x + normal.y * a.y + normal.z * a.z;
+    float p1 = normal.x * b.x + normal.y * b.y + normal.z * b.z;
+    float p2 = normal.x * c.x + normal.y * c.y + normal.z * c.z;
+    float reach = abs(normal.x) * half_size.x + abs(normal.y) * half_size.y + abs(normal.z) * half_size.z;
+    bvec4 apart = bvec4(any(apart_x), any(apart_y), any(apart_z), min(p0, min(p1, p2)) > reach || max(p0, max(p1, p2)) < -reach);
+    return !any(apart);
 }
 
 #endif

@@ -29,6 +29,7 @@ uint workgroup_exclusive_scan(uint mine, out uint total) {
 // Which numbers a scan runs over.
 const uint SCAN_OFFSETS = 0u;
 const uint SCAN_TABLE = 1u;
+const uint SCAN_FIRST_TABLE = 2u; // of the first pass: its sum is the number of pairs that are kept
 
 uint scan_length(StateIn state, uint which) { return which == SCAN_OFFSETS ? state.state.offset_count : state.state.table_count; }
 

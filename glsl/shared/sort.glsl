@@ -8,23 +8,26 @@
 
 layout(local_size_x_id = 0) in;
 layout(local_size_x = 8) in;
-layout(constant_id = 1) const uint SORT_BITS = 8;
-layout(constant_id = 2) const uint KEYS_EACH = 512;
+layout(constant_id = 1) const uint SORT_BITS = 10;
+layout(constant_id = 2) const uint KEYS_EACH = 1024;
 
-const uint DIGITS = 1u << SORT_BITS;
+// A row a digit, a column an invocation; at most 8,192 counters (32 KiB).
+shared uint counter[(1u << SORT_BITS) * gl_WorkGroupSize.x];
 
-// A row a digit, a column an invocation; at most 4,096 counters (16 KiB).
-shared uint counter[DIGITS * gl_WorkGroupSize.x];
+// `bits` a digit, at most SORT_BITS.
+uint digit_of(uint key, uint pass, uint bits) { return (key >> (pass * bits)) & ((1u << bits) - 1u); }
 
-uint digit_of(uint key, uint pass) { return (key >> (pass * SORT_BITS)) & (DIGITS - 1u); }
+// Pairs that a pass reads. The first leaves those without a cell behind.
+uint pairs_of(StateIn state, uint pass) { return pass == 0u ? state.state.pair_count : state.state.kept_count; }
 
-void count_run(UintsIn keys, uint pass, uint first, uint last) {
+void count_run(UintsIn keys, uint pass, uint bits, uint sentinel, uint first, uint last) {
     uint column = gl_LocalInvocationID.x;
-    for (uint digit = 0u; digit < DIGITS; ++digit) {
+    for (uint digit = 0u; digit < 1u << bits; ++digit) {
         counter[digit * gl_WorkGroupSize.x + column] = 0u;
     }
     for (uint i = first; i < last; ++i) {
-        counter[digit_of(keys.word[i], pass) * gl_WorkGroupSize.x + column] += 1u;
+        uint key = keys.word[i];
+        counter[digit_of(key, pass, bits) * gl_WorkGroupSize.x + column] += uint(key != sentinel);
     }
 }
 

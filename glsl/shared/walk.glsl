@@ -67,10 +67,8 @@ void walk_enter(inout Walk walk, GridHeader grid) {
 ivec3 walk_cell_at(Walk walk, GridHeader grid, float s) {
     vec3 travelled = s * walk.ray.direction;
     vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
-    // Clamped as floats: a conversion out of range may give anything. Added to 2^23, a whole number is the mantissa; drivers that run on a
-    // CPU convert to integers one invocation at a time.
-    vec3 clamped = min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0));
-    return ivec3(floatBitsToUint(clamped + vec3(8388608.0)) & uvec3(0x7FFFFFu));
+    // Clamped as floats: a conversion out of range may give anything.
+    return ivec3(whole(min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0))));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.

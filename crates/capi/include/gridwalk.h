@@ -366,7 +366,8 @@ typedef struct GridwalkCapacity {
      */
     uint32_t cells;
     /**
-     * Cells in the boxes of all triangles, counted once a triangle, at most `GRIDWALK_MAX_PAIRS`. Pairs beyond are dropped and reported.
+     * Cells of all triangles, counted once a triangle, at most `GRIDWALK_MAX_PAIRS`: with exact overlap those that it meets, of a box of more
+     * than 32 cells all. Pairs beyond are dropped and reported.
      */
     uint32_t pairs;
 } GridwalkCapacity;

@@ -169,7 +169,8 @@ pub struct GridwalkCapacity {
     pub triangles: u32,
     /// Cells of the grid, at most `GRIDWALK_MAX_CELLS`; a build lowers its density to fit.
     pub cells: u32,
-    /// Cells in the boxes of all triangles, counted once a triangle, at most `GRIDWALK_MAX_PAIRS`. Pairs beyond are dropped and reported.
+    /// Cells of all triangles, counted once a triangle, at most `GRIDWALK_MAX_PAIRS`: with exact overlap those that it meets, of a box of more
+    /// than 32 cells all. Pairs beyond are dropped and reported.
     pub pairs: u32,
 }
 

@@ -88,7 +88,7 @@ pub struct BuildState {
     pub triangle_count: u32,
     /// `triangle_count` + 1.
     pub offset_count: u32,
-    /// Cells in all triangles' boxes, saturating.
+    /// Cells of all triangles, saturating.
     pub pair_total: u32,
     /// `pair_total`, at most the capacity.
     pub pair_count: u32,
@@ -102,6 +102,14 @@ pub struct BuildState {
     pub overflow: u32,
     /// Triangles of all geometries, saturating; `triangle_count` is at most the capacity.
     pub triangle_total: u32,
+    /// Bits of the digit of each pass.
+    pub digit_bits: u32,
+    /// 1: some triangle's box holds more cells than a mask has bits.
+    pub has_large: u32,
+    /// Pairs with a cell: the first pass of the sort leaves the others behind.
+    pub kept_count: u32,
+    /// Key of a pair without a cell.
+    pub sentinel: u32,
     /// Zero.
     pub reserved: [u32; 3],
 }
@@ -112,8 +120,8 @@ pub struct BuildState {
 pub struct DispatchArguments {
     /// Of `clear_cells`.
     pub clear_cells: [u32; 4],
-    /// Of `overlap_emit`.
-    pub emit: [u32; 4],
+    /// Of `overlap_emit_large`.
+    pub emit_large: [u32; 4],
     /// Of `sort_histogram` and `sort_scatter`, for each pass.
     pub sort: [[u32; 4]; MAX_PASSES],
     /// Of the reduce and the downsweep of the digit table's scan, for each pass.
@@ -130,7 +138,7 @@ pub struct DispatchArguments {
     pub gather: [u32; 4],
     /// Of `bounds_reduce`.
     pub bounds_reduce: [u32; 4],
-    /// Of `overlap_count`.
+    /// Of `overlap_count` and `overlap_emit`.
     pub overlap_count: [u32; 4],
     /// Of the reduce and the downsweep of the offsets' scan.
     pub offsets_scan: [u32; 4],
@@ -173,7 +181,7 @@ pub struct Report {
     pub longest_list: u32,
     /// Pairs (cell, triangle) that the grid lists.
     pub pairs: u32,
-    /// Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more.
+    /// Cells of all triangles, as [`BuildState::pair_total`]: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more.
     pub pair_total: u32,
     /// 0, or bits [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`] and [`OVERFLOW_TRIANGLES`].
     pub overflow: u32,

@@ -16,9 +16,9 @@ pub struct Shape {
     pub reduce_items: u32,
     /// Bricks an invocation of `brick_reduce`.
     pub reduce_bricks: u32,
-    /// Bits a digit of the sort, at least 4; 2^`sort_bits` <= 8 * `sort_size` * `sort_keys`.
+    /// Most bits a digit of the sort, at least 4; 2^`sort_bits` <= 8 * `sort_size` * `sort_keys`.
     pub sort_bits: u32,
-    /// Invocations a workgroup of the sort; 2^`sort_bits` * `sort_size` <= 4,096.
+    /// Invocations a workgroup of the sort; 2^`sort_bits` * `sort_size` <= 8,192.
     pub sort_size: u32,
     /// Keys an invocation of the sort.
     pub sort_keys: u32,
@@ -34,10 +34,10 @@ impl Shape {
         scan_items: 256,
         reduce_items: 64,
         reduce_bricks: 4,
-        sort_bits: 8,
+        sort_bits: 10,
         sort_size: 8,
-        sort_keys: 512,
-        emit_pairs: 16,
+        sort_keys: 1024,
+        emit_pairs: 64,
     };
 
     /// For GPUs.
@@ -63,7 +63,7 @@ impl Shape {
             && self.scan_size.is_power_of_two()
             // Fewer bits need more passes than a plan records.
             && (4..=12).contains(&self.sort_bits)
-            && digits(self.sort_bits) * self.sort_size <= 4096
+            && digits(self.sort_bits) * self.sort_size <= 8192
             // The digit table of 2^28 pairs stays below 2^31 entries.
             && digits(self.sort_bits) <= 8 * self.sort_tile()
     }

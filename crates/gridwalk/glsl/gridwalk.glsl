@@ -131,6 +131,10 @@ precise vec3 gridwalk_boundary(vec3 box_min, vec3 cell_size, vec3 i) {
     return box_min + offset;
 }
 
+// Of whole numbers in [0, 2^23): added to 2^23 they are the mantissa. Drivers that run on a CPU convert floats to integers one invocation
+// at a time.
+uvec3 gridwalk_whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
+
 uint gridwalk_cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
 
 #endif
@@ -332,10 +336,8 @@ void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader gri
 ivec3 gridwalk_walk_cell_at(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
     precise vec3 travelled = s * walk.ray.direction;
     precise vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
-    // Clamped as floats: a conversion out of range may give anything. Added to 2^23, a whole number is the mantissa; drivers that run on a
-    // CPU convert to integers one invocation at a time.
-    precise vec3 clamped = min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0));
-    return ivec3(floatBitsToUint(clamped + vec3(8388608.0)) & uvec3(0x7FFFFFu));
+    // Clamped as floats: a conversion out of range may give anything.
+    return ivec3(gridwalk_whole(min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0))));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.

@@ -209,7 +209,7 @@ pub static CONFIGURE: Kernel = Kernel {
         ("triangles", Access::Read),
         ("bricks", Access::Read),
     ],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "BRICK_TILE", 1024)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "BRICK_TILE", 1024)],
 };
 
 /// Kernel `count_hits`, from `glsl/map/count_hits.comp`.
@@ -294,9 +294,15 @@ pub static OVERLAP_COUNT: Kernel = Kernel {
     spirv: spirv!("../spirv/overlap_count.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 32,
-    accesses: &[("grid", Access::Read), ("state", Access::Read), ("triangles", Access::ReadWrite), ("counts", Access::Write)],
-    spec_constants: &[],
+    push_constant_size: 40,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::ReadWrite),
+        ("triangles", Access::ReadWrite),
+        ("counts", Access::Write),
+        ("masks", Access::Write),
+    ],
+    spec_constants: &[(1, "EXACT", 0)],
 };
 
 /// Kernel `overlap_emit`, from `glsl/map/overlap_emit.comp`.
@@ -306,11 +312,34 @@ pub static OVERLAP_EMIT: Kernel = Kernel {
     spirv: spirv!("../spirv/overlap_emit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 64,
+    push_constant_size: 72,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
         ("offsets", Access::Read),
+        ("masks", Access::Read),
+        ("triangles", Access::Read),
+        ("keys_a", Access::Write),
+        ("keys_b", Access::Write),
+        ("values_a", Access::Write),
+        ("values_b", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
+/// Kernel `overlap_emit_large`, from `glsl/map/overlap_emit_large.comp`.
+pub static OVERLAP_EMIT_LARGE: Kernel = Kernel {
+    name: "overlap_emit_large",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/overlap_emit_large.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 72,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("offsets", Access::Read),
+        ("masks", Access::Read),
         ("triangles", Access::Read),
         ("keys_a", Access::Write),
         ("keys_b", Access::Write),
@@ -329,7 +358,7 @@ pub static PAIR_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::Write), ("report", Access::ReadWrite)],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 8), (3, "SORT_TILE", 4096), (4, "SCAN_TILE", 4096), (5, "PAIRS_EACH", 16)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "PAIRS_EACH", 16)],
 };
 
 /// Kernel `report_spine`, from `glsl/cooperative/report_spine.comp`.
@@ -375,8 +404,8 @@ pub static SCAN_SPINE: Kernel = Kernel {
     spirv: spirv!("../spirv/scan_spine.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 24,
-    accesses: &[("state", Access::Read), ("partials", Access::ReadWrite)],
+    push_constant_size: 32,
+    accesses: &[("state", Access::Read), ("partials", Access::ReadWrite), ("kept", Access::Write)],
     spec_constants: &[(1, "ITEMS_EACH", 16), (2, "SCAN_TILE", 4096)],
 };
 
@@ -389,7 +418,7 @@ pub static SORT_HISTOGRAM: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::Read), ("keys_a", Access::Read), ("keys_b", Access::Read), ("table", Access::Write)],
-    spec_constants: &[(1, "SORT_BITS", 8), (2, "KEYS_EACH", 512)],
+    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024)],
 };
 
 /// Kernel `sort_scatter`, from `glsl/cooperative/sort_scatter.comp`.
@@ -408,7 +437,7 @@ pub static SORT_SCATTER: Kernel = Kernel {
         ("values_b", Access::ReadWrite),
         ("table", Access::Read),
     ],
-    spec_constants: &[(1, "SORT_BITS", 8), (2, "KEYS_EACH", 512)],
+    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024)],
 };
 
 /// Kernel `trace_args`, from `glsl/map/trace_args.comp`.
@@ -457,6 +486,7 @@ pub static ALL: &[&Kernel] = &[
     &NEAREST_HITS,
     &OVERLAP_COUNT,
     &OVERLAP_EMIT,
+    &OVERLAP_EMIT_LARGE,
     &PAIR_ARGS,
     &REPORT_SPINE,
     &SCAN_DOWNSWEEP,
@@ -620,7 +650,15 @@ const _: () = {
     assert!(size(|host: &Host| &host.overflow) == 4);
     assert!(core::mem::offset_of!(Host, triangle_total) == 32);
     assert!(size(|host: &Host| &host.triangle_total) == 4);
-    assert!(core::mem::offset_of!(Host, reserved) == 36);
+    assert!(core::mem::offset_of!(Host, digit_bits) == 36);
+    assert!(size(|host: &Host| &host.digit_bits) == 4);
+    assert!(core::mem::offset_of!(Host, has_large) == 40);
+    assert!(size(|host: &Host| &host.has_large) == 4);
+    assert!(core::mem::offset_of!(Host, kept_count) == 44);
+    assert!(size(|host: &Host| &host.kept_count) == 4);
+    assert!(core::mem::offset_of!(Host, sentinel) == 48);
+    assert!(size(|host: &Host| &host.sentinel) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 52);
     assert!(size(|host: &Host| &host.reserved) == 12);
 };
 const _: () = {
@@ -745,8 +783,8 @@ const _: () = {
     use gridwalk_core::layout::DispatchArguments as Host;
     assert!(core::mem::offset_of!(Host, clear_cells) == 0);
     assert!(size(|host: &Host| &host.clear_cells) == 16);
-    assert!(core::mem::offset_of!(Host, emit) == 16);
-    assert!(size(|host: &Host| &host.emit) == 16);
+    assert!(core::mem::offset_of!(Host, emit_large) == 16);
+    assert!(size(|host: &Host| &host.emit_large) == 16);
     assert!(core::mem::offset_of!(Host, sort) == 32);
     assert!(size(|host: &Host| &host.sort) == 128);
     assert!(core::mem::offset_of!(Host, table_scan) == 160);
@@ -929,7 +967,9 @@ const _: () = {
     assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, counts) == 24);
     assert!(size(|host: &Host| &host.counts) == 8);
-    assert!(size_of::<Host>() == 32);
+    assert!(core::mem::offset_of!(Host, masks) == 32);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(size_of::<Host>() == 40);
 };
 const _: () = {
     use crate::push::OverlapEmit as Host;
@@ -939,17 +979,41 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, offsets) == 16);
     assert!(size(|host: &Host| &host.offsets) == 8);
-    assert!(core::mem::offset_of!(Host, triangles) == 24);
+    assert!(core::mem::offset_of!(Host, masks) == 24);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 32);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, keys_a) == 32);
+    assert!(core::mem::offset_of!(Host, keys_a) == 40);
     assert!(size(|host: &Host| &host.keys_a) == 8);
-    assert!(core::mem::offset_of!(Host, keys_b) == 40);
+    assert!(core::mem::offset_of!(Host, keys_b) == 48);
     assert!(size(|host: &Host| &host.keys_b) == 8);
-    assert!(core::mem::offset_of!(Host, values_a) == 48);
+    assert!(core::mem::offset_of!(Host, values_a) == 56);
     assert!(size(|host: &Host| &host.values_a) == 8);
-    assert!(core::mem::offset_of!(Host, values_b) == 56);
+    assert!(core::mem::offset_of!(Host, values_b) == 64);
     assert!(size(|host: &Host| &host.values_b) == 8);
-    assert!(size_of::<Host>() == 64);
+    assert!(size_of::<Host>() == 72);
+};
+const _: () = {
+    use crate::push::OverlapEmitLarge as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 16);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, masks) == 24);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 32);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, keys_a) == 40);
+    assert!(size(|host: &Host| &host.keys_a) == 8);
+    assert!(core::mem::offset_of!(Host, keys_b) == 48);
+    assert!(size(|host: &Host| &host.keys_b) == 8);
+    assert!(core::mem::offset_of!(Host, values_a) == 56);
+    assert!(size(|host: &Host| &host.values_a) == 8);
+    assert!(core::mem::offset_of!(Host, values_b) == 64);
+    assert!(size(|host: &Host| &host.values_b) == 8);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use crate::push::PairArgs as Host;
@@ -1050,9 +1114,11 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, partials) == 8);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, which) == 16);
+    assert!(core::mem::offset_of!(Host, kept) == 16);
+    assert!(size(|host: &Host| &host.kept) == 8);
+    assert!(core::mem::offset_of!(Host, which) == 24);
     assert!(size(|host: &Host| &host.which) == 4);
-    assert!(size_of::<Host>() == 24);
+    assert!(size_of::<Host>() == 32);
 };
 const _: () = {
     use crate::push::SortHistogram as Host;

@@ -29,6 +29,7 @@ pub enum Buffer {
     SceneBounds,
     BoundsPartials,
     Offsets,
+    CellMasks,
     ScanPartials,
     KeysA,
     KeysB,
@@ -49,7 +50,7 @@ pub enum Buffer {
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 30] = [
+    pub const ALL: [Buffer; 31] = [
         Buffer::Positions,
         Buffer::Indices,
         Buffer::Records,
@@ -64,6 +65,7 @@ impl Buffer {
         Buffer::SceneBounds,
         Buffer::BoundsPartials,
         Buffer::Offsets,
+        Buffer::CellMasks,
         Buffer::ScanPartials,
         Buffer::KeysA,
         Buffer::KeysB,
@@ -250,8 +252,9 @@ pub struct BuildInputs {
 
 const SCAN_OFFSETS: u32 = 0;
 const SCAN_TABLE: u32 = 1;
+const SCAN_FIRST_TABLE: u32 = 2;
 
-/// Bit of [`Step::variant`] of `overlap_emit`.
+/// Bit of [`Step::variant`] of `overlap_count` and `overlap_emit_large`.
 pub(crate) const EXACT: u32 = 1;
 
 fn argument(offset: usize) -> Dispatch {
@@ -266,7 +269,7 @@ fn scan(plan: &mut Plan, which: u32, values: Buffer, groups: Dispatch, spine: Di
     let (values, partials, state) = (values.token(), Buffer::ScanPartials.token(), Buffer::State.token());
     plan.step(Step::new(&SCAN_REDUCE, groups, push::ScanReduce { state, values, partials, which, padding: 0 }));
     plan.barrier(Barrier::Shader);
-    plan.step(Step::new(&SCAN_SPINE, spine, push::ScanSpine { state, partials, which, padding: 0 }));
+    plan.step(Step::new(&SCAN_SPINE, spine, push::ScanSpine { state, partials, kept: state, which, padding: 0 }));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(&SCAN_DOWNSWEEP, groups, push::ScanDownsweep { state, partials, values, which, padding: 0 }));
 }
@@ -363,11 +366,12 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
         argument(offset_of!(DispatchArguments, clear_cells)),
         push::ClearCells { grid, cells: Cells.token() },
     ));
-    plan.step(Step::new(
-        &OVERLAP_COUNT,
-        groups.overlap_count,
-        push::OverlapCount { grid, state, triangles: Triangles.token(), counts: Offsets.token() },
-    ));
+    let exact = if inputs.exact { EXACT } else { 0 };
+    let (offsets, masks, triangles) = (Offsets.token(), CellMasks.token(), Triangles.token());
+    plan.step(
+        Step::new(&OVERLAP_COUNT, groups.overlap_count, push::OverlapCount { grid, state, triangles, counts: offsets, masks })
+            .variant(exact),
+    );
     plan.barrier(Barrier::Shader);
     scan(&mut plan, SCAN_OFFSETS, Offsets, groups.offsets_scan, Dispatch::Direct([1, 1, 1]));
     plan.barrier(Barrier::Shader);
@@ -384,22 +388,21 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
         },
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
+    let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), References.token());
+    plan.step(Step::new(
+        &OVERLAP_EMIT,
+        groups.overlap_count,
+        push::OverlapEmit { grid, state, offsets, masks, triangles, keys_a, keys_b, values_a, values_b },
+    ));
+    // They write different words of the same arrays.
+    plan.barrier(Barrier::Shader);
     plan.step(
         Step::new(
-            &OVERLAP_EMIT,
-            argument(offset_of!(DispatchArguments, emit)),
-            push::OverlapEmit {
-                grid,
-                state: State.token(),
-                offsets: Offsets.token(),
-                triangles: Triangles.token(),
-                keys_a: KeysA.token(),
-                keys_b: KeysB.token(),
-                values_a: ValuesA.token(),
-                values_b: References.token(),
-            },
+            &OVERLAP_EMIT_LARGE,
+            argument(offset_of!(DispatchArguments, emit_large)),
+            push::OverlapEmitLarge { grid, state, offsets, masks, triangles, keys_a, keys_b, values_a, values_b },
         )
-        .variant(if inputs.exact { EXACT } else { 0 }),
+        .variant(exact),
     );
     for pass in 0..passes {
         let slot = 16 * pass as usize;
@@ -420,7 +423,8 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
         plan.barrier(Barrier::Shader);
         let table_scan = argument(offset_of!(DispatchArguments, table_scan) + slot);
         let table_spine = argument(offset_of!(DispatchArguments, table_spine) + slot);
-        scan(&mut plan, SCAN_TABLE, Table, table_scan, table_spine);
+        let which = if pass == 0 { SCAN_FIRST_TABLE } else { SCAN_TABLE };
+        scan(&mut plan, which, Table, table_scan, table_spine);
         plan.barrier(Barrier::Shader);
         plan.step(Step::new(
             &SORT_SCATTER,

@@ -68,6 +68,7 @@ pub(crate) struct ScanReduce {
 pub(crate) struct ScanSpine {
     pub(crate) state: u64,
     pub(crate) partials: u64,
+    pub(crate) kept: u64,
     pub(crate) which: u32,
     pub(crate) padding: u32,
 }
@@ -204,6 +205,7 @@ pub(crate) struct OverlapCount {
     pub(crate) state: u64,
     pub(crate) triangles: u64,
     pub(crate) counts: u64,
+    pub(crate) masks: u64,
 }
 
 /// Of kernel `overlap_emit`.
@@ -213,6 +215,22 @@ pub(crate) struct OverlapEmit {
     pub(crate) grid: u64,
     pub(crate) state: u64,
     pub(crate) offsets: u64,
+    pub(crate) masks: u64,
+    pub(crate) triangles: u64,
+    pub(crate) keys_a: u64,
+    pub(crate) keys_b: u64,
+    pub(crate) values_a: u64,
+    pub(crate) values_b: u64,
+}
+
+/// Of kernel `overlap_emit_large`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct OverlapEmitLarge {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) offsets: u64,
+    pub(crate) masks: u64,
     pub(crate) triangles: u64,
     pub(crate) keys_a: u64,
     pub(crate) keys_b: u64,

@@ -13,7 +13,8 @@ pub struct Capacity {
     pub triangles: u32,
     /// Cells of the grid, at most 2^28; a build lowers its density to fit.
     pub cells: u32,
-    /// Cells in the boxes of all triangles, counted once a triangle, at most 2^28. Pairs beyond are dropped and reported.
+    /// Cells of all triangles, counted once a triangle, at most 2^28: with exact overlap those that it meets, of a box of more than 32 cells all.
+    /// Pairs beyond are dropped and reported.
     pub pairs: u32,
 }
 
@@ -120,6 +121,7 @@ pub(crate) struct ScratchLayout {
     pub(crate) scene_bounds: Part,
     pub(crate) bounds_partials: Part,
     pub(crate) offsets: Part,
+    pub(crate) cell_masks: Part,
     pub(crate) scan_partials: Part,
     pub(crate) keys_a: Part,
     pub(crate) keys_b: Part,
@@ -143,6 +145,7 @@ impl ScratchLayout {
             scene_bounds: packer.part(size_of::<Bounds>() as u64),
             bounds_partials: packer.part(u64::from(shape.bounds_tiles(capacity.triangles)) * size_of::<Bounds>() as u64),
             offsets: packer.part(offsets * 4),
+            cell_masks: packer.part(u64::from(capacity.triangles.max(1)) * 4),
             scan_partials: packer.part(offsets.max(table).div_ceil(u64::from(shape.scan_tile())) * 4),
             keys_a: packer.part(pairs * 4),
             keys_b: packer.part(pairs * 4),
@@ -157,7 +160,7 @@ impl ScratchLayout {
 }
 
 /// Name and bytes of every part of the grid and the scratch region, in this order.
-pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64); 18] {
+pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64); 19] {
     let grid = GridLayout::new(capacity);
     let scratch = ScratchLayout::new(capacity, shape);
     [
@@ -171,6 +174,7 @@ pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64);
         ("scene bounds", scratch.scene_bounds),
         ("bounds partials", scratch.bounds_partials),
         ("offsets", scratch.offsets),
+        ("cell masks", scratch.cell_masks),
         ("scan partials", scratch.scan_partials),
         ("keys a", scratch.keys_a),
         ("keys b", scratch.keys_b),
@@ -201,9 +205,9 @@ impl TraceLayout {
     }
 }
 
-/// Passes that a plan records: digits of the largest key that the capacity of cells admits, the sentinel included.
+/// Passes that a plan records: digits of the largest key that the capacity of cells admits.
 pub(crate) fn pass_capacity(capacity: &Capacity, shape: &Shape) -> u32 {
-    let key_bits = 32 - capacity.cells.max(1).leading_zeros();
+    let key_bits = 32 - (capacity.cells.max(1) - 1).leading_zeros();
     key_bits.div_ceil(shape.sort_bits).min(MAX_PASSES as u32)
 }
 

@@ -20,7 +20,8 @@ pub struct GridEstimate {
     pub cells: u32,
     /// Pairs of a cell and a triangle that the grid lists.
     pub pairs: u64,
-    /// Cells in the boxes of all triangles: the pairs that the build needs room for, and with [`Overlap::Box`] those that it lists.
+    /// Cells in the boxes of all triangles: with [`Overlap::Box`] the pairs that the grid lists and that its build needs room for, else no fewer
+    /// than either.
     pub box_pairs: u64,
     /// Bytes of the grid, with its copy of the triangles.
     pub grid_bytes: u64,

@@ -30,7 +30,7 @@ fn the_largest_scans() {
             let mut random = Random::new(which.into());
             let mut sums: Vec<u32> = (0..length.div_ceil(shape.scan_tile())).map(|_| random.below(10_000)).collect();
             let partials = gpu.upload("partials", &sums);
-            gpu.launch(&SCAN_SPINE, 0, &[&state_memory, &partials], &[which], [1, 1, 1]);
+            gpu.launch(&SCAN_SPINE, 0, &[&state_memory, &partials, &state_memory], &[which], [1, 1, 1]);
             scan_spine(&shape, length, &mut sums);
             assert_same(&format!("{length} numbers, {shape:?}"), &partials.read::<u32>(0, sums.len()), &sums);
         }

@@ -1,14 +1,14 @@
 use gridwalk::Shape;
-use gridwalk::kernels::{OVERLAP_COUNT, OVERLAP_EMIT};
+use gridwalk::kernels::{OVERLAP_COUNT, OVERLAP_EMIT, OVERLAP_EMIT_LARGE};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::gather::gathered_state;
 use gridwalk_core::layout::{BuildState, GridHeader};
 use gridwalk_core::overlap::triangle_overlaps_cell;
 use gridwalk_core::sort::writes_a;
 use gridwalk_core::twin::overlap_count::overlap_count;
-use gridwalk_core::twin::overlap_emit::overlap_emit;
+use gridwalk_core::twin::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
 use gridwalk_core::twin::scan_spine::exclusive_scan;
-use gridwalk_tests::gpu::{Gpu, Mesh};
+use gridwalk_tests::gpu::{CANARY, Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
 use gridwalk_tests::random::Random;
 
@@ -16,62 +16,81 @@ use crate::rebuild::invariants::{cell_box, overlaps};
 
 use super::{TINY, assert_same, devices, gathered, header, many_groups, sizes, untouched};
 
-/// Counts on the device and compares; returns triangles and offsets.
-fn count(gpu: &Gpu, mesh: &Mesh, header: &GridHeader, what: &str) -> (Vec<[f32; 4]>, Vec<u32>) {
+/// What the count leaves for the emission.
+struct Counted {
+    triangles: Vec<[f32; 4]>,
+    offsets: Vec<u32>,
+    masks: Vec<u32>,
+    state: BuildState,
+}
+
+/// Counts on the device and compares.
+fn count(gpu: &Gpu, mesh: &Mesh, header: &GridHeader, exact: bool, what: &str) -> Counted {
     let shape = gpu.tracer.shape();
-    let triangles = mesh.indices.len() as u32;
-    let mut expected = gathered(mesh);
+    let count = mesh.indices.len() as u32;
+    let mut triangles = gathered(mesh);
+    let mut state = gathered_state(count, count);
     let grid = gpu.upload("grid", &[*header]);
-    let state = gpu.upload("state", &[gathered_state(triangles, triangles)]);
-    let moved = gpu.upload("triangles", &expected);
-    let counts = gpu.guarded("counts", 4 * (u64::from(triangles) + 1));
-    let groups = split_workgroups(triangles + 1, shape.map_size);
-    gpu.launch(&OVERLAP_COUNT, 0, &[&grid, &state, &moved, &counts], &[], groups);
-    let mut expected_counts = untouched(triangles as usize + 1);
-    overlap_count(&shape, groups, header, triangles, &mut expected, &mut expected_counts);
-    assert_same(&format!("{what}: counts"), &counts.read::<u32>(0, expected_counts.len()), &expected_counts);
-    let found: Vec<u32> = moved.read(0, 4 * expected.len());
-    assert_same(&format!("{what}: triangles"), &found, bytemuck::cast_slice(&expected));
-    exclusive_scan(&mut expected_counts, 0);
-    (expected, expected_counts)
+    let device_state = gpu.upload("state", &[state]);
+    let moved = gpu.upload("triangles", &triangles);
+    let counts = gpu.guarded("counts", 4 * (u64::from(count) + 1));
+    let device_masks = gpu.guarded("masks", 4 * u64::from(count.max(1)));
+    let groups = split_workgroups(count + 1, shape.map_size);
+    gpu.launch(&OVERLAP_COUNT, exact.into(), &[&grid, &device_state, &moved, &counts, &device_masks], &[], groups);
+    let (mut offsets, mut masks) = (untouched(count as usize + 1), untouched(count.max(1) as usize));
+    overlap_count(&shape, groups, exact, header, &mut state, &mut triangles, &mut offsets, &mut masks);
+    assert_same(&format!("{what}: counts"), &counts.read::<u32>(0, offsets.len()), &offsets);
+    assert_same(&format!("{what}: masks"), &device_masks.read::<u32>(0, masks.len()), &masks);
+    assert_same(&format!("{what}: state"), &device_state.read::<BuildState>(0, 1), &[state]);
+    let found: Vec<u32> = moved.read(0, 4 * triangles.len());
+    assert_same(&format!("{what}: triangles"), &found, bytemuck::cast_slice(&triangles));
+    exclusive_scan(&mut offsets, 0);
+    Counted { triangles, offsets, masks, state }
 }
 
 /// Emits on the device and compares, for a capacity of `part` of the pairs.
-fn emit(gpu: &Gpu, header: &GridHeader, triangles: &[[f32; 4]], offsets: &[u32], part: f64, what: &str) {
+fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f64, what: &str) {
     let shape = gpu.tracer.shape();
+    let Counted { triangles, offsets, masks, state } = counted;
     let total = offsets[offsets.len() - 1];
     let pair_count = (f64::from(total) * part) as u32;
+    let size = 4 * u64::from(pair_count.max(1));
+    let pass_count = if exact { 3 } else { 2 };
     let grid = gpu.upload("grid", &[*header]);
     let device_offsets = gpu.upload("offsets", offsets);
+    let device_masks = gpu.upload("masks", masks);
     let device_triangles = gpu.upload("triangles", triangles);
-    let size = 4 * u64::from(pair_count.max(1));
-    for (exact, pass_count) in [(false, 2), (true, 3)] {
-        let triangle_count = offsets.len() as u32 - 1;
-        let state = BuildState { triangle_count, offset_count: triangle_count + 1, pair_count, pass_count, ..BuildState::default() };
-        let state = gpu.upload("state", &[state]);
-        let [a, b, c, d] = ["keys a", "keys b", "values a", "values b"].map(|name| gpu.guarded(name, size));
-        let groups = split_workgroups(pair_count.div_ceil(shape.emit_pairs), shape.map_size);
-        let memory = [&grid, &state, &device_offsets, &device_triangles, &a, &b, &c, &d];
-        gpu.launch(&OVERLAP_EMIT, exact.into(), &memory, &[], groups);
-        let count = pair_count as usize;
-        let (mut keys, mut values) = (untouched(count), untouched(count));
-        overlap_emit(&shape, groups, exact, header, pair_count, offsets, triangles, &mut keys, &mut values);
-        let (written, left) = if writes_a(pass_count, 0) { ([&a, &c], [&b, &d]) } else { ([&b, &d], [&a, &c]) };
-        let what = format!("{what}, {pair_count} of {total} pairs, exact {exact}");
-        assert_same(&format!("{what}: triangles of pairs"), &written[1].read::<u32>(0, count), &values);
-        assert_same(&format!("{what}: keys"), &written[0].read::<u32>(0, count), &keys);
-        for memory in left {
-            assert_same(&format!("{what}: the other buffer"), &memory.read::<u32>(0, count), &untouched(count));
-        }
+    let device_state = gpu.upload("state", &[BuildState { pair_count, pass_count, ..*state }]);
+    let [a, b, c, d] = ["keys a", "keys b", "values a", "values b"].map(|name| gpu.guarded(name, size));
+    let memory = [&grid, &device_state, &device_offsets, &device_masks, &device_triangles, &a, &b, &c, &d];
+    let groups = split_workgroups(state.offset_count, shape.map_size);
+    let runs = split_workgroups(pair_count.div_ceil(shape.emit_pairs), shape.map_size);
+    gpu.launch(&OVERLAP_EMIT, 0, &memory, &[], groups);
+    gpu.launch(&OVERLAP_EMIT_LARGE, exact.into(), &memory, &[], runs);
+    let count = pair_count as usize;
+    let (mut keys, mut values) = (untouched(count), untouched(count));
+    let (keys_of, values_of) = (&mut keys, &mut values);
+    let mut emission = Emission { grid: header, pair_count, offsets, masks, triangles, keys: keys_of, values: values_of };
+    overlap_emit(&shape, groups, &mut emission);
+    overlap_emit_large(&shape, runs, exact, &mut emission);
+    let (written, left) = if writes_a(pass_count, 0) { ([&a, &c], [&b, &d]) } else { ([&b, &d], [&a, &c]) };
+    let what = format!("{what}, {pair_count} of {total} pairs, exact {exact}");
+    assert!(!keys.contains(&CANARY), "{what}: a pair that no triangle wrote");
+    assert_same(&format!("{what}: triangles of pairs"), &written[1].read::<u32>(0, count), &values);
+    assert_same(&format!("{what}: keys"), &written[0].read::<u32>(0, count), &keys);
+    for memory in left {
+        assert_same(&format!("{what}: the other buffer"), &memory.read::<u32>(0, count), &untouched(count));
     }
 }
 
 fn check(gpu: &Gpu, mesh: &Mesh, density: f32, fixed: [u32; 3], parts: &[f64], what: &str) {
     let header = header(mesh, density, fixed);
     let what = format!("{what}, {:?}, {:?}", header.resolution, gpu.tracer.shape());
-    let (triangles, offsets) = count(gpu, mesh, &header, &what);
-    for part in parts {
-        emit(gpu, &header, &triangles, &offsets, *part, &what);
+    for exact in [false, true] {
+        let counted = count(gpu, mesh, &header, exact, &format!("{what}, exact {exact}"));
+        for part in parts {
+            emit(gpu, &header, &counted, exact, *part, &what);
+        }
     }
 }
 

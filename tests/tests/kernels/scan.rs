@@ -29,7 +29,7 @@ fn check(gpu: &Gpu, which: u32, numbers: &[u32], what: &str) {
     gpu.launch(&SCAN_REDUCE, 0, &[&state, &values, &partials], &[which], groups);
     scan_reduce(&shape, groups, length, &expected, &mut sums);
     assert_same(&format!("{what}: reduce"), &partials.read::<u32>(0, tiles), &sums);
-    gpu.launch(&SCAN_SPINE, 0, &[&state, &partials], &[which], [1, 1, 1]);
+    gpu.launch(&SCAN_SPINE, 0, &[&state, &partials, &state], &[which], [1, 1, 1]);
     scan_spine(&shape, length, &mut sums);
     assert_same(&format!("{what}: spine"), &partials.read::<u32>(0, tiles), &sums);
     gpu.launch(&SCAN_DOWNSWEEP, 0, &[&state, &partials, &values], &[which], groups);

@@ -2,7 +2,7 @@ use gridwalk::Shape;
 use gridwalk::kernels::{SCAN_DOWNSWEEP, SCAN_REDUCE, SCAN_SPINE, SORT_HISTOGRAM, SORT_SCATTER};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::layout::BuildState;
-use gridwalk_core::sort::writes_a;
+use gridwalk_core::sort::{passes_of, writes_a};
 use gridwalk_core::twin::sort_histogram::sort_histogram;
 use gridwalk_core::twin::sort_scatter::{Pairs, sort_scatter};
 use gridwalk_tests::gpu::{CANARY, Gpu};
@@ -10,15 +10,28 @@ use gridwalk_tests::random::Random;
 
 use super::{ODD, TINY, assert_same, devices, many_groups, sizes};
 
+/// Key of a pair without a cell.
+const SENTINEL: u32 = 123_456_789;
+
 /// Sorts pairs (key, place) as a build does and compares with the twins after each pass, and in the end with a stable sort.
 fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
     let shape = gpu.tracer.shape();
     let count = keys.len() as u32;
     let tiles = count.div_ceil(shape.sort_tile());
-    let table_count = tiles << shape.sort_bits;
-    let pass_count = key_bits.div_ceil(shape.sort_bits);
-    let state = BuildState { pair_count: count, key_bits, pass_count, table_count, ..BuildState::default() };
-    let state = gpu.upload("state", &[state]);
+    let (pass_count, digit_bits) = passes_of(key_bits, shape.sort_bits);
+    let table_count = tiles << digit_bits;
+    let kept_count = keys.iter().filter(|key| **key != SENTINEL).count() as u32;
+    let mut state = BuildState {
+        pair_count: count,
+        kept_count: count,
+        key_bits,
+        pass_count,
+        digit_bits,
+        table_count,
+        sentinel: SENTINEL,
+        ..BuildState::default()
+    };
+    let device_state = gpu.upload("state", &[state]);
     let table = gpu.guarded("table", 4 * u64::from(table_count));
     let partials = gpu.guarded("partials", 4 * u64::from(table_count.div_ceil(shape.scan_tile())));
     let places: Vec<u32> = (0..count).collect();
@@ -29,29 +42,35 @@ fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
         (of(keys), of(&places))
     });
     let (mut from, mut to) = ((keys.to_vec(), places), (empty.clone(), empty.clone()));
+    let mut expected = vec![CANARY; table_count as usize];
     for pass in 0..pass_count {
         let groups = split_workgroups(tiles, 1);
         let scan_groups = split_workgroups(table_count, shape.scan_tile());
-        gpu.launch(&SORT_HISTOGRAM, 0, &[&state, &keys_a, &keys_b, &table], &[pass], groups);
-        let mut expected = vec![CANARY; table_count as usize];
-        sort_histogram(&shape, groups, count, &from.0, &mut expected, pass);
+        gpu.launch(&SORT_HISTOGRAM, 0, &[&device_state, &keys_a, &keys_b, &table], &[pass], groups);
+        sort_histogram(&shape, groups, &state, &from.0, &mut expected, pass);
         assert_same(&format!("{what}: histogram of pass {pass}"), &table.read::<u32>(0, expected.len()), &expected);
-        gpu.launch(&SCAN_REDUCE, 0, &[&state, &table, &partials], &[1], scan_groups);
-        gpu.launch(&SCAN_SPINE, 0, &[&state, &partials], &[1], [1, 1, 1]);
-        gpu.launch(&SCAN_DOWNSWEEP, 0, &[&state, &partials, &table], &[1], scan_groups);
-        let memory = [&state, &keys_a, &keys_b, &values_a, &values_b, &table];
+        let which = if pass == 0 { 2 } else { 1 };
+        gpu.launch(&SCAN_REDUCE, 0, &[&device_state, &table, &partials], &[which], scan_groups);
+        gpu.launch(&SCAN_SPINE, 0, &[&device_state, &partials, &device_state], &[which], [1, 1, 1]);
+        gpu.launch(&SCAN_DOWNSWEEP, 0, &[&device_state, &partials, &table], &[which], scan_groups);
+        let memory = [&device_state, &keys_a, &keys_b, &values_a, &values_b, &table];
         gpu.launch(&SORT_SCATTER, 0, &memory, &[pass], groups);
-        let table = table.read::<u32>(0, expected.len());
+        expected = table.read::<u32>(0, expected.len());
         let pairs = Pairs { keys: from.0.as_slice(), values: from.1.as_slice() };
-        sort_scatter(&shape, groups, count, &pairs, &mut to.0, &mut to.1, &table, pass);
+        sort_scatter(&shape, groups, &state, &pairs, &mut to.0, &mut to.1, &expected, pass);
+        if pass == 0 {
+            state.kept_count = device_state.read::<BuildState>(0, 1)[0].kept_count;
+            assert_eq!(state.kept_count, kept_count, "{what}");
+        }
         let (found_keys, found_values) = if writes_a(pass_count, pass + 1) { (&keys_a, &values_a) } else { (&keys_b, &values_b) };
         assert_same(&format!("{what}: keys of pass {pass}"), &found_keys.read::<u32>(0, keys.len()), &to.0);
         assert_same(&format!("{what}: values of pass {pass}"), &found_values.read::<u32>(0, keys.len()), &to.1);
         std::mem::swap(&mut from, &mut to);
     }
-    let mut expected: Vec<u32> = (0..count).collect();
+    let kept = |place: &u32| pass_count == 0 || keys[*place as usize] != SENTINEL;
+    let mut expected: Vec<u32> = (0..count).filter(kept).collect();
     expected.sort_by_key(|place| keys[*place as usize]);
-    assert_same(&format!("{what}: against a stable sort"), &values_b.read::<u32>(0, keys.len()), &expected);
+    assert_same(&format!("{what}: against a stable sort"), &values_b.read::<u32>(0, expected.len()), &expected);
 }
 
 fn keys(count: u32, bits: u32, seed: u64) -> Vec<u32> {
@@ -95,6 +114,22 @@ fn sort_of_special_orders() {
     for gpu in devices() {
         for (name, keys) in &orders {
             check(gpu, keys, 17, &format!("{name}, {:?}", gpu.tracer.shape()));
+        }
+    }
+}
+
+#[test]
+fn sort_leaves_pairs_without_a_cell_behind() {
+    for gpu in devices() {
+        for (part, seed) in [(0, 5), (1, 6), (50, 7), (99, 8), (100, 9)] {
+            let mut random = Random::new(seed);
+            let mut keys = keys(20_000, 17, seed);
+            for key in &mut keys {
+                if random.below(100) < part {
+                    *key = SENTINEL;
+                }
+            }
+            check(gpu, &keys, 17, &format!("{part} % without a cell, seed {seed}, {:?}", gpu.tracer.shape()));
         }
     }
 }

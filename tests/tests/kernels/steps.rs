@@ -11,7 +11,7 @@ use gridwalk_tests::meshes::{soup, spoil};
 use super::devices;
 use crate::rebuild::records::{Scene, placed};
 
-const COMPARED: [Buffer; 18] = [
+const COMPARED: [Buffer; 19] = [
     Buffer::Header,
     Buffer::State,
     Buffer::Arguments,
@@ -19,6 +19,7 @@ const COMPARED: [Buffer; 18] = [
     Buffer::BoundsPartials,
     Buffer::Triangles,
     Buffer::Offsets,
+    Buffer::CellMasks,
     Buffer::ScanPartials,
     Buffer::KeysA,
     Buffer::KeysB,
@@ -42,6 +43,7 @@ fn words(memory: &Memory, buffer: Buffer) -> &[u32] {
         Buffer::BoundsPartials => bytemuck::cast_slice(&memory.bounds_partials),
         Buffer::Triangles => bytemuck::cast_slice(&memory.triangles),
         Buffer::Offsets => &memory.offsets,
+        Buffer::CellMasks => &memory.cell_masks,
         Buffer::ScanPartials => &memory.scan_partials,
         Buffer::KeysA => &memory.keys_a,
         Buffer::KeysB => &memory.keys_b,

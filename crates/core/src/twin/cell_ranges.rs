@@ -17,9 +17,6 @@ pub fn cell_ranges(
     let covered = workgroups(groups).end * shape.map_size;
     for pair in 0..pair_count.min(covered) {
         let key = keys[pair as usize];
-        if key == cell_count {
-            continue;
-        }
         let before = pair.checked_sub(1).map(|before| keys[before as usize]);
         if before != Some(key) {
             cells[key as usize][0] = pair;

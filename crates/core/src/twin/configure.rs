@@ -9,6 +9,7 @@ use crate::dispatch::split_workgroups;
 use crate::grid::brick_resolution;
 use crate::layout::{Bounds, BuildState, DispatchArguments, GridHeader, OVERFLOW_CELLS, Report};
 use crate::shape::Shape;
+use crate::sort::passes_of;
 use crate::vector::{Vec3, add, clamped_exponent, largest, max, max_f32, min, power_of_two, sub};
 
 const MAX_RESOLUTION: f32 = 4096.0;
@@ -167,10 +168,11 @@ pub fn configure_state(
     arguments: &mut DispatchArguments,
     report: &mut Report,
 ) {
-    let largest_key = if info.exact { header.cell_count } else { header.cell_count - 1 };
-    let key_bits = 32 - largest_key.leading_zeros();
+    let key_bits = 32 - (header.cell_count - 1).leading_zeros();
     let overflow = state.overflow | overflow;
-    *state = BuildState { key_bits, pass_count: key_bits.div_ceil(shape.sort_bits), overflow, ..*state };
+    let sentinel = if info.exact { header.cell_count } else { u32::MAX };
+    let (pass_count, digit_bits) = passes_of(key_bits, shape.sort_bits);
+    *state = BuildState { key_bits, pass_count, digit_bits, sentinel, overflow, ..*state };
     arguments.clear_cells = four(split_workgroups(header.cell_count.div_ceil(CELLS_EACH), shape.map_size));
     let bricks = brick_resolution(header.resolution).iter().product();
     arguments.brick_reduce = four(split_workgroups(bricks, shape.brick_tile()));

@@ -2,25 +2,34 @@
 
 use crate::dispatch::workgroups;
 use crate::gather::is_dropped;
-use crate::layout::GridHeader;
-use crate::overlap::triangle_cells;
+use crate::layout::{BuildState, GridHeader};
+use crate::overlap::{SMALL_BOX, triangle_cells, triangle_overlaps_cell};
 use crate::shape::Shape;
 use crate::vector::Vec3;
 
-/// Brings triangles into the grid's frame and counts the cells that their boxes overlap; the entry after the last triangle is zero.
+/// Brings triangles into the grid's frame and counts their cells: of a small box those that it overlaps, a bit of its mask each, of a large
+/// one all; that has no bit. The count after the last triangle is zero.
+#[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn overlap_count(
     shape: &Shape,
     groups: [u32; 3],
+    exact: bool,
     grid: &GridHeader,
-    triangle_count: u32,
+    state: &mut BuildState,
     triangles: &mut [[f32; 4]],
     counts: &mut [u32],
+    masks: &mut [u32],
 ) {
+    let triangle_count = state.triangle_count;
     let invocations = workgroups(groups).flat_map(|group| group * shape.map_size..(group + 1) * shape.map_size);
     for triangle in invocations.filter(|triangle| *triangle <= triangle_count) {
         counts[triangle as usize] = 0;
+        if triangle == triangle_count {
+            continue;
+        }
+        masks[triangle as usize] = 0;
         let first = 3 * triangle as usize;
-        if triangle == triangle_count || is_dropped(triangles[first]) {
+        if is_dropped(triangles[first]) {
             continue;
         }
         let v: [Vec3; 3] = std::array::from_fn(|corner| {
@@ -29,7 +38,16 @@ pub fn overlap_count(
             triangles[first + corner] = [x, y, z, word];
             [x, y, z]
         });
-        let [x, y, z] = triangle_cells(grid, v).size();
-        counts[triangle as usize] = x * y * z;
+        let cells = triangle_cells(grid, v);
+        let all = cells.count();
+        if all > SMALL_BOX {
+            state.has_large = 1;
+            counts[triangle as usize] = all;
+            continue;
+        }
+        let meets = |n: &u32| !exact || cells.is_row() || triangle_overlaps_cell(grid, v, cells.cell(*n));
+        let mask = (0..all).filter(meets).fold(0u32, |mask, n| mask | 1 << n);
+        counts[triangle as usize] = mask.count_ones();
+        masks[triangle as usize] = mask;
     }
 }

@@ -1,42 +1,70 @@
-//! Twin of kernel `overlap_emit`.
+//! Twins of kernels `overlap_emit` and `overlap_emit_large`.
 
 use crate::grid::cell_id;
 use crate::layout::GridHeader;
-use crate::overlap::{triangle_cells, triangle_overlaps_cell};
+use crate::overlap::{CellBox, triangle_cells, triangle_overlaps_cell};
 use crate::shape::Shape;
+use crate::vector::Vec3;
 
-/// Writes the pairs (cell id, triangle). The kernel hands an invocation a run of pairs and searches for its triangle; here each triangle
-/// writes its own, which must come to the same.
-#[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
-pub fn overlap_emit(
-    shape: &Shape,
-    groups: [u32; 3],
-    exact: bool,
-    grid: &GridHeader,
-    pair_count: u32,
-    offsets: &[u32],
-    triangles: &[[f32; 4]],
-    keys: &mut [u32],
-    values: &mut [u32],
-) {
-    let covered = groups[0] * groups[1] * shape.map_size * shape.emit_pairs;
-    let last = pair_count.min(covered);
-    for (triangle, ends) in offsets.windows(2).enumerate().take_while(|(_, ends)| ends[0] < last) {
-        if ends[0] == ends[1] {
-            continue;
-        }
-        let v: [[f32; 3]; 3] = std::array::from_fn(|i| {
-            let [x, y, z, _] = triangles[3 * triangle + i];
+/// What both kernels read and write.
+#[derive(Debug)]
+pub struct Emission<'a> {
+    /// Head of the grid.
+    pub grid: &'a GridHeader,
+    /// Pairs that there is room for.
+    pub pair_count: u32,
+    /// First pair of each triangle, and the end of the last.
+    pub offsets: &'a [u32],
+    /// Cells of each small box that the triangle overlaps, a bit each; 0 for a large box.
+    pub masks: &'a [u32],
+    /// In the grid's frame.
+    pub triangles: &'a [[f32; 4]],
+    /// Cell ids.
+    pub keys: &'a mut [u32],
+    /// Triangles.
+    pub values: &'a mut [u32],
+}
+
+impl Emission<'_> {
+    fn cells(&self, triangle: usize) -> ([Vec3; 3], CellBox) {
+        let v: [Vec3; 3] = std::array::from_fn(|i| {
+            let [x, y, z, _] = self.triangles[3 * triangle + i];
             [x, y, z]
         });
-        let cells = triangle_cells(grid, v);
-        // A box of one row of cells is met by its triangle in each of them.
-        let test = exact && cells.size().iter().filter(|n| **n == 1).count() < 2;
+        (v, triangle_cells(self.grid, v))
+    }
+}
+
+/// Writes the pairs (cell id, triangle) of the triangles with small boxes.
+pub fn overlap_emit(shape: &Shape, groups: [u32; 3], emission: &mut Emission) {
+    let covered = (groups[0] * groups[1] * shape.map_size) as usize;
+    for triangle in 0..covered.min(emission.offsets.len() - 1) {
+        let mask = emission.masks[triangle];
+        let (_, cells) = emission.cells(triangle);
+        let pairs = emission.offsets[triangle]..emission.pair_count;
+        for (pair, n) in pairs.zip((0..u32::BITS).filter(|n| (mask >> n) & 1 != 0)) {
+            emission.keys[pair as usize] = cell_id(cells.cell(n), emission.grid.resolution);
+            emission.values[pair as usize] = triangle as u32;
+        }
+    }
+}
+
+/// Writes the pairs of the triangles with large boxes. The kernel hands an invocation a run of pairs and searches for its triangle; here
+/// each triangle writes its own, which must come to the same.
+pub fn overlap_emit_large(shape: &Shape, groups: [u32; 3], exact: bool, emission: &mut Emission) {
+    let covered = groups[0] * groups[1] * shape.map_size * shape.emit_pairs;
+    let last = emission.pair_count.min(covered);
+    for (triangle, ends) in emission.offsets.windows(2).enumerate().take_while(|(_, ends)| ends[0] < last) {
+        if emission.masks[triangle] != 0 || ends[0] == ends[1] {
+            continue;
+        }
+        let (v, cells) = emission.cells(triangle);
+        let test = exact && !cells.is_row();
         for pair in ends[0]..ends[1].min(last) {
             let cell = cells.cell(pair - ends[0]);
-            let overlaps = !test || triangle_overlaps_cell(grid, v, cell);
-            keys[pair as usize] = if overlaps { cell_id(cell, grid.resolution) } else { grid.cell_count };
-            values[pair as usize] = triangle as u32;
+            let overlaps = !test || triangle_overlaps_cell(emission.grid, v, cell);
+            emission.keys[pair as usize] = if overlaps { cell_id(cell, emission.grid.resolution) } else { emission.grid.cell_count };
+            emission.values[pair as usize] = triangle as u32;
         }
     }
 }

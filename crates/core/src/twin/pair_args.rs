@@ -23,11 +23,13 @@ pub fn pair_args(
     let tiles = count.div_ceil(shape.sort_tile());
     state.pair_total = total;
     state.pair_count = count;
-    state.table_count = tiles << shape.sort_bits;
+    state.kept_count = count;
+    state.table_count = tiles << state.digit_bits;
     state.overflow |= if total > pair_capacity { OVERFLOW_PAIRS } else { 0 };
     report.pair_total = total;
     report.overflow = state.overflow;
-    arguments.emit = four(split_workgroups(count.div_ceil(shape.emit_pairs), shape.map_size));
+    let runs = four(split_workgroups(count.div_ceil(shape.emit_pairs), shape.map_size));
+    arguments.emit_large = if state.has_large != 0 { runs } else { [0; 4] };
     arguments.cell_ranges = four(split_workgroups(count, shape.map_size));
     for pass in 0..pass_capacity as usize {
         let used = (pass as u32) < state.pass_count && count > 0;

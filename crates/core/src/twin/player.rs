@@ -15,7 +15,7 @@ use super::gather::gather;
 use super::gather_records::gather_records;
 use super::geometry_scan::geometry_scan;
 use super::overlap_count::overlap_count;
-use super::overlap_emit::overlap_emit;
+use super::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
 use super::pair_args::pair_args;
 use super::report_spine::report_spine;
 use super::scan_downsweep::scan_downsweep;
@@ -27,6 +27,9 @@ use crate::geometry::{AddressedMemory, GeometryRecord};
 use crate::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, Report};
 use crate::shape::Shape;
 use crate::sort::writes_a;
+
+/// Which scan leaves its sum as the number of pairs that are kept.
+const SCAN_FIRST_TABLE: u32 = 2;
 
 /// The number of workgroups of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +73,7 @@ pub struct Memory {
     pub scene_bounds: Bounds,
     pub bounds_partials: Vec<Bounds>,
     pub offsets: Vec<u32>,
+    pub cell_masks: Vec<u32>,
     pub scan_partials: Vec<u32>,
     pub keys_a: Vec<u32>,
     pub keys_b: Vec<u32>,
@@ -110,6 +114,7 @@ impl Memory {
             scene_bounds: filled(word),
             bounds_partials: vec![filled(word); shape.bounds_tiles(triangles) as usize],
             offsets: vec![word; offsets],
+            cell_masks: vec![word; triangles.max(1) as usize],
             scan_partials: vec![word; offsets.max(table).div_ceil(shape.scan_tile() as usize)],
             keys_a: vec![word; pairs],
             keys_b: vec![word; pairs],
@@ -140,7 +145,7 @@ impl Memory {
         }
         let words = step.words;
         let GridHeader { cell_count, resolution, .. } = self.header;
-        let BuildState { triangle_count, pair_count, .. } = self.state;
+        let BuildState { triangle_count, pair_count, kept_count, .. } = self.state;
         match step.kernel {
             "gather" => {
                 let (triangles, state) = (&mut self.triangles, &mut self.state);
@@ -171,7 +176,8 @@ impl Memory {
             }
             "clear_cells" => clear_cells(shape, groups, cell_count, &mut self.cells),
             "overlap_count" => {
-                overlap_count(shape, groups, &self.header, triangle_count, &mut self.triangles, &mut self.offsets);
+                let (triangles, counts, masks) = (&mut self.triangles, &mut self.offsets, &mut self.cell_masks);
+                overlap_count(shape, groups, step.exact, &self.header, &mut self.state, triangles, counts, masks);
             }
             "scan_reduce" | "scan_spine" | "scan_downsweep" => {
                 let (length, values) = match words[0] {
@@ -181,7 +187,12 @@ impl Memory {
                 let partials = &mut self.scan_partials;
                 match step.kernel {
                     "scan_reduce" => scan_reduce(shape, groups, length, values, partials),
-                    "scan_spine" => scan_spine(shape, length, partials),
+                    "scan_spine" => {
+                        let sum = scan_spine(shape, length, partials);
+                        if words[0] == SCAN_FIRST_TABLE {
+                            self.state.kept_count = sum;
+                        }
+                    }
                     _ => scan_downsweep(shape, groups, length, partials, values),
                 }
             }
@@ -189,26 +200,31 @@ impl Memory {
                 let (state, arguments, report) = (&mut self.state, &mut self.arguments, &mut self.report);
                 pair_args(shape, state, &self.offsets, arguments, report, words[0], words[1]);
             }
-            "overlap_emit" => {
+            "overlap_emit" | "overlap_emit_large" => {
                 let (keys, values) = match writes_a(self.state.pass_count, 0) {
                     true => (&mut self.keys_a, &mut self.values_a),
                     false => (&mut self.keys_b, &mut self.references),
                 };
                 let offsets = &self.offsets[..self.state.offset_count as usize];
-                overlap_emit(shape, groups, step.exact, &self.header, pair_count, offsets, &self.triangles, keys, values);
+                let (grid, masks, triangles) = (&self.header, &self.cell_masks, &self.triangles);
+                let mut emission = Emission { grid, pair_count, offsets, masks, triangles, keys, values };
+                match step.kernel {
+                    "overlap_emit" => overlap_emit(shape, groups, &mut emission),
+                    _ => overlap_emit_large(shape, groups, step.exact, &mut emission),
+                }
             }
             "sort_histogram" => {
                 let keys = if writes_a(self.state.pass_count, words[0]) { &self.keys_a } else { &self.keys_b };
-                sort_histogram(shape, groups, pair_count, keys, &mut self.table, words[0]);
+                sort_histogram(shape, groups, &self.state, keys, &mut self.table, words[0]);
             }
             "sort_scatter" => {
                 let a = (&mut self.keys_a, &mut self.values_a);
                 let b = (&mut self.keys_b, &mut self.references);
                 let (from, to) = if writes_a(self.state.pass_count, words[0]) { (a, b) } else { (b, a) };
                 let pairs = Pairs { keys: from.0.as_slice(), values: from.1.as_slice() };
-                sort_scatter(shape, groups, pair_count, &pairs, to.0, to.1, &self.table, words[0]);
+                sort_scatter(shape, groups, &self.state, &pairs, to.0, to.1, &self.table, words[0]);
             }
-            "cell_ranges" => cell_ranges(shape, groups, cell_count, pair_count, &self.keys_b, &mut self.cells, &mut self.report),
+            "cell_ranges" => cell_ranges(shape, groups, cell_count, kept_count, &self.keys_b, &mut self.cells, &mut self.report),
             "brick_reduce" => brick_reduce(shape, groups, resolution, &self.cells, &mut self.bricks, &mut self.occupancy),
             "report_spine" => report_spine(shape, resolution, &self.occupancy, &mut self.report),
             "brick_distance_x" => brick_distance_x(shape, groups, resolution, &self.bricks, &mut self.distances_x),

@@ -11,7 +11,7 @@ pub fn exclusive_scan(values: &mut [u32], before: u32) -> u32 {
     })
 }
 
-/// Scans the sums of the tiles of `length` numbers in place.
-pub fn scan_spine(shape: &Shape, length: u32, partials: &mut [u32]) {
-    exclusive_scan(&mut partials[..length.div_ceil(shape.scan_tile()) as usize], 0);
+/// Scans the sums of the tiles of `length` numbers in place; returns the sum of all.
+pub fn scan_spine(shape: &Shape, length: u32, partials: &mut [u32]) -> u32 {
+    exclusive_scan(&mut partials[..length.div_ceil(shape.scan_tile()) as usize], 0)
 }

@@ -1,8 +1,9 @@
 //! Twin of kernel `sort_scatter`.
 
 use crate::dispatch::workgroups;
+use crate::layout::BuildState;
 use crate::shape::Shape;
-use crate::sort::digit_of;
+use crate::sort::{digit_of, pairs_of};
 
 /// Pairs as two arrays.
 pub struct Pairs<'a, T: ?Sized> {
@@ -12,25 +13,27 @@ pub struct Pairs<'a, T: ?Sized> {
     pub values: &'a T,
 }
 
-/// Moves the pairs of each tile to where their digit puts them; `table` says where a tile's first key of a digit goes.
+/// Moves the pairs of each tile to where their digit puts them; `table` says where a tile's first key of a digit goes; those without a cell
+/// go nowhere.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn sort_scatter(
     shape: &Shape,
     groups: [u32; 3],
-    pair_count: u32,
+    state: &BuildState,
     pairs: &Pairs<'_, [u32]>,
     keys_out: &mut [u32],
     values_out: &mut [u32],
     table: &[u32],
     pass: u32,
 ) {
+    let (pair_count, bits) = (pairs_of(state, pass), state.digit_bits);
     let tile_size = shape.sort_tile() as usize;
     let tile_count = pair_count.div_ceil(shape.sort_tile());
     let tiles = pairs.keys[..pair_count as usize].chunks(tile_size).zip(pairs.values.chunks(tile_size));
     for (tile, (keys, values)) in workgroups(groups).zip(tiles) {
-        let mut next: Vec<u32> = (0..1u32 << shape.sort_bits).map(|digit| table[(digit * tile_count + tile) as usize]).collect();
-        for (key, value) in keys.iter().zip(values) {
-            let destination = &mut next[digit_of(*key, pass, shape.sort_bits) as usize];
+        let mut next: Vec<u32> = (0..1u32 << bits).map(|digit| table[(digit * tile_count + tile) as usize]).collect();
+        for (key, value) in keys.iter().zip(values).filter(|(key, _)| **key != state.sentinel) {
+            let destination = &mut next[digit_of(*key, pass, bits) as usize];
             keys_out[*destination as usize] = *key;
             values_out[*destination as usize] = *value;
             *destination += 1;

@@ -1,0 +1,86 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// Writes the pairs (cell id, triangle) of the triangles with large boxes: one invocation, a run of consecutive pairs, so the work is
+// balanced whatever a triangle's size. Only if there are such triangles.
+
+#include "shared/build.glsl"
+#include "shared/overlap.glsl"
+#include "shared/ping_pong.glsl"
+
+layout(local_size_x_id = 0) in;
+layout(local_size_x = 64) in;
+layout(constant_id = 1) const uint PAIRS_EACH = 16;
+layout(constant_id = 2) const bool EXACT = false;
+
+layout(push_constant, std430) uniform OverlapEmitLarge {
+    GridwalkGrid grid;
+    StateIn state;
+    UintsIn offsets;
+    UintsIn masks;
+    Triangles triangles;
+    UintsOut keys_a;
+    UintsOut keys_b;
+    UintsOut values_a;
+    UintsOut values_b;
+};
+
+// The last triangle whose first pair is not after `pair`: the one that owns it. At most 27 turns.
+uint owner(uint pair, uint triangle_count) {
+    uint low = 0u;
+    uint high = triangle_count;
+    while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        if (offsets.word[middle] <= pair) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+void main() {
+    uint first = invocation_index() * PAIRS_EACH;
+    uint last = min(first + PAIRS_EACH, state.state.pair_count);
+    if (first >= last) {
+        return;
+    }
+    GridHeader header = grid.header;
+    uint triangle_count = state.state.triangle_count;
+    bool to_a = writes_a(state.state.pass_count, 0u);
+    UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
+    UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
+
+    uint triangle = owner(first, triangle_count);
+    // At most PAIRS_EACH turns of each loop: each triangle that is passed has a pair.
+    for (uint pair = first; pair < last;) {
+        uint begin = offsets.word[triangle];
+        uint end = min(offsets.word[triangle + 1u], last);
+        if (masks.word[triangle] == 0u) {
+            vec3 v0 = triangles.vertex[3u * triangle].xyz;
+            vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
+            vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
+            CellBox box = triangle_cells(header, v0, v1, v2);
+            uvec3 size = box.high - box.low + uvec3(1u);
+            uint local = pair - begin;
+            uint row = local / size.x;
+            uvec3 cell = box.low + uvec3(local - row * size.x, row % size.y, row / size.y);
+            bool test = EXACT && !is_row(box);
+            for (uint i = pair; i < end; ++i) {
+                bool overlaps = !test || triangle_overlaps_cell(header, v0, v1, v2, cell);
+                keys.word[i] = overlaps ? cell_id(cell, header.resolution) : header.cell_count;
+                values.word[i] = triangle;
+                cell = next_cell(box, cell);
+            }
+        }
+        pair = end;
+        triangle += 1u;
+        // Across triangles without a cell; a search again if there are many.
+        if (pair < last && offsets.word[triangle + 1u] == pair) {
+            triangle = owner(pair, triangle_count);
+        }
+    }
+}
