@@ -4,7 +4,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_ray_query : require
 
-// Rays through an acceleration structure of the driver's own: every so many of those in memory, answered side by side.
+// Rays through an acceleration structure of the driver's own: one run of 64 of every so many in memory, answered side by side.
 
 #include "shared/dispatch.glsl"
 #include "shared/trace_types.glsl"
@@ -13,13 +13,16 @@ layout(local_size_x_id = 0) in;
 layout(local_size_x = 64) in;
 layout(constant_id = 1) const bool ANY = false; // the first hit ends the search, and is a hit at 0 of triangle 0
 
+// Host twin: contender::RUN.
+const uint RUN = 64u;
+
 layout(push_constant, std430) uniform RayQuery {
     uvec2 structure;
     RaysIn rays;
     HitsOut hits;
     uint first; // answer
     uint count; // of answers
-    uint stride; // of rays: answer i is that of ray i * stride
+    uint stride; // of runs: the n-th run of answers is that of the run n * stride of rays
 };
 
 void main() {
@@ -28,7 +31,7 @@ void main() {
         return;
     }
     index += first;
-    Ray ray = rays.ray[index * stride];
+    Ray ray = rays.ray[index / RUN * RUN * stride + index % RUN];
     uint flags = ANY ? (gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT) : gl_RayFlagsOpaqueEXT;
     rayQueryEXT query;
     rayQueryInitializeEXT(query, accelerationStructureEXT(structure), flags, 0xFFu, ray.origin, ray.t_min, ray.direction, ray.t_max);

@@ -36,8 +36,24 @@ pub enum Tree {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answers {
     pub hits: Vec<Hit>,
-    /// Answer i is that of ray i * step: who is far too slow for all rays traces one of so many.
+    /// Who is far too slow for all rays traces one run of [`RUN`] of so many.
     pub step: usize,
+}
+
+/// Rays that are neighbours in a set and stay together where some are left out: a tile of the camera's.
+pub const RUN: usize = 64;
+
+impl Answers {
+    /// Which ray an answer belongs to.
+    pub fn ray(&self, answer: usize) -> usize {
+        answer / RUN * RUN * self.step.max(1) + answer % RUN
+    }
+
+    /// How many of the rays are answered.
+    pub fn count(rays: usize, step: usize) -> usize {
+        let last = rays.div_ceil(RUN).saturating_sub(1) / step.max(1);
+        last * RUN + RUN.min(rays - last * step.max(1) * RUN)
+    }
 }
 
 /// Someone who builds and traces. Milliseconds are those of the device for who runs there, else those on the wall.
@@ -181,6 +197,16 @@ mod tests {
         let ms = times(&turns).iter().map(|runs| runs.iter().map(|run| run.ms).collect::<Vec<_>>()).collect::<Vec<_>>();
         assert_eq!(ms, [[1.0, 2.0], [3.0, 4.0]]);
         assert!(turns.iter().flatten().all(|turn| turn.processor_ms >= 0.0));
+    }
+
+    #[test]
+    fn some_runs_of_rays() {
+        for (rays, step, count, last) in [(1000, 1, 1000, 999), (1000, 3, 5 * 64 + 40, 999), (990, 5, 4 * 64 - 34, 989), (0, 4, 0, 0)] {
+            let answers = Answers { hits: Vec::new(), step };
+            assert_eq!(Answers::count(rays, step), count, "{rays} rays, one run of {step}");
+            assert_eq!(answers.ray(count.saturating_sub(1)), last);
+        }
+        assert_eq!([63, 64, 130].map(|answer| Answers { hits: Vec::new(), step: 3 }.ray(answer)), [63, 192, 386]);
     }
 
     #[test]

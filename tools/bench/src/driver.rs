@@ -173,7 +173,7 @@ struct Batch {
     rays: Buffer,
     hits: Buffer,
     count: usize,
-    /// One of so many rays is traced; 0 before the speed is known.
+    /// One run of so many is traced; 0 before the speed is known.
     step: usize,
 }
 
@@ -218,11 +218,11 @@ impl DriverRival {
         })
     }
 
-    /// Traces one of `step` rays; returns the milliseconds.
+    /// Traces one run of `step`; returns the milliseconds.
     fn run(&self, batch: &Batch, step: usize) -> Result<f64> {
         let structure = self.pair.as_ref().context("no structure was prepared")?.instances.address;
         let pipeline = &self.driver.pipelines[usize::from(batch.query == Query::Any)];
-        let answers = u32::try_from(batch.count.div_ceil(step)).context("too many rays")?;
+        let answers = u32::try_from(Answers::count(batch.count, step)).context("too many rays")?;
         let stride = u32::try_from(step).context("too many rays")?;
         let most = self.driver.context.rays_per_submission();
         let mut ms = 0.0;
@@ -290,11 +290,10 @@ impl Contender for DriverRival {
         if step == 0 {
             // Of all of them, lest one part is easier than the rest.
             let probes = batch.count.div_ceil(PROBES).max(1);
-            let all_ms = self.run(batch, probes)? * probes as f64;
+            let all_ms = self.run(batch, probes)? * batch.count as f64 / Answers::count(batch.count, probes).max(1) as f64;
             step = ((all_ms / CPU_BUDGET_MS).ceil() as usize).clamp(1, probes);
         }
-        let traced = batch.count.div_ceil(step).max(1) as f64;
-        let ms = self.run(batch, step)? * (batch.count as f64 / traced);
+        let ms = self.run(batch, step)? * batch.count as f64 / Answers::count(batch.count, step).max(1) as f64;
         if let Some(batch) = self.batches.get_mut(set) {
             batch.step = step;
         }
@@ -304,7 +303,7 @@ impl Contender for DriverRival {
     fn answers(&mut self, set: usize) -> Result<Answers> {
         let Some(batch) = self.batches.get(set) else { return Ok(Answers { hits: Vec::new(), step: 1 }) };
         let step = batch.step.max(1);
-        Ok(Answers { hits: batch.hits.read(0, batch.count.div_ceil(step))?, step })
+        Ok(Answers { hits: batch.hits.read(0, Answers::count(batch.count, step))?, step })
     }
 
     fn bytes(&self) -> Option<u64> {
@@ -347,7 +346,7 @@ mod tests {
         let scene = GpuScene::upload(&context, &gridwalk_scene::scene_of_mesh(mesh)).unwrap();
         let mut rival = DriverRival::new(&Rc::new(driver), scene.geometry());
         let ray = |x: f32| Ray { origin: [x, 0.25, 0.0], t_min: 0.0, direction: [0.0, 0.0, 1.0], t_max: f32::INFINITY };
-        let rays: Vec<Ray> = [0.5, 2.0].map(ray).repeat(3);
+        let rays: Vec<Ray> = [0.5, 2.0].map(ray).repeat(100);
         let sets = [Query::Closest, Query::Any].map(|query| Arc::new(Set { kind: "test", query, rays: rays.clone() }));
         rival.load(&sets).unwrap();
         let hit = Hit { t: 1.0, u: 0.5, v: 0.25, triangle: 0 };
@@ -355,7 +354,8 @@ mod tests {
             rival.prepare(tree).unwrap();
             assert!(rival.rebuild().unwrap() > 0.0 && rival.bytes().unwrap() > 0);
             for (set, hit) in [(0, hit), (1, Hit { t: 0.0, u: 0.0, v: 0.0, triangle: 0 })] {
-                for (step, expected) in [(1, [hit, Hit::MISS].repeat(3)), (2, vec![hit; 3]), (5, vec![hit, Hit::MISS])] {
+                for (step, count) in [(1, 200), (2, 128), (3, 72), (5, 64)] {
+                    let expected = [hit, Hit::MISS].repeat(count / 2);
                     rival.batches[set].step = step;
                     assert!(rival.trace(set).unwrap() > 0.0);
                     assert_eq!(rival.answers(set).unwrap(), Answers { hits: expected, step });
@@ -367,7 +367,7 @@ mod tests {
         // As it is, with the speed of a CPU told first.
         rival.load(&sets).unwrap();
         rival.trace(0).unwrap();
-        assert_eq!(rival.answers(0).unwrap(), Answers { hits: [hit, Hit::MISS].repeat(3), step: 1 });
+        assert_eq!(rival.answers(0).unwrap(), Answers { hits: [hit, Hit::MISS].repeat(100), step: 1 });
         assert_eq!(context.take_validation_messages(), [""; 0]);
     }
 }

@@ -338,9 +338,9 @@ const EXAMPLES: usize = 16;
 /// Counts how hits differ from a rival's.
 pub fn difference(rival: &str, rays: &[Ray], ours: &[Hit], theirs: &Answers) -> Difference {
     let mut difference = Difference { rival: rival.to_owned(), ..Difference::default() };
-    let step = theirs.step.max(1);
-    let pairs = rays.iter().zip(ours).enumerate().step_by(step).zip(&theirs.hits);
-    for ((index, (ray, ours)), theirs) in pairs {
+    let pairs = theirs.hits.iter().enumerate().map(|(answer, hit)| (theirs.ray(answer), hit));
+    for (index, theirs) in pairs {
+        let Some((ray, ours)) = rays.get(index).zip(ours.get(index)) else { continue };
         difference.rays += 1;
         if ours.triangle == theirs.triangle {
             difference.distance = difference.distance.max(if ours.is_hit() { (ours.t - theirs.t).abs() } else { 0.0 });
@@ -384,9 +384,12 @@ mod tests {
         assert_eq!(found.examples[1].theirs, Some((3.0, 0)));
         let same = difference("us", &rays, &ours[..5], &Answers { hits: ours[..5].to_vec(), step: 1 });
         assert_eq!(same, Difference { rival: "us".to_owned(), rays: 5, ..Difference::default() });
-        // Every third ray alone.
-        let some = difference("them", &rays, &ours, &Answers { hits: vec![theirs[0], theirs[3], theirs[6]], step: 3 });
-        assert_eq!((some.rays, some.nearer, some.farther), (3, 1, 0));
-        assert_eq!(some.examples[0].ray, 6);
+        // Every third run of rays alone.
+        let (rays, ours) = ([rays[0]; 200], [ours[6]; 200]);
+        let some = difference("them", &rays, &ours, &Answers { hits: [[theirs[3]; 64].as_slice(), &[ours[0]; 8]].concat(), step: 3 });
+        assert_eq!((some.rays, some.nearer, some.farther), (72, 64, 0));
+        assert_eq!(some.examples[15].ray, 15);
+        let last = difference("them", &rays, &ours, &Answers { hits: [[ours[0]; 64].as_slice(), &[theirs[3]; 8]].concat(), step: 3 });
+        assert_eq!((last.nearer, last.examples[0].ray), (8, 192));
     }
 }
