@@ -128,7 +128,8 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
         triangles: report.triangles.into(),
         cells: report.cells.into(),
         cells_in_use: report.cells_in_use.into(),
-        pairs: report.pair_total.into(),
+        written: report.pair_total.into(),
+        pairs: report.pairs.into(),
     };
     for step in &mut steps {
         step.bytes = size.step(&step.name, step.count);
