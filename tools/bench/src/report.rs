@@ -84,7 +84,7 @@ pub struct SceneReport {
     pub cells_in_use: u32,
     /// Pairs that are listed.
     pub pairs: u32,
-    /// Pairs that were written: those, and of boxes of more than 32 cells the others too.
+    /// Pairs that the build needed room for: those that are left behind while sorting included.
     pub pair_total: u32,
     /// Triangles in the fullest cell.
     pub longest_list: u32,
