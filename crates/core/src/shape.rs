@@ -145,7 +145,7 @@ mod tests {
             Shape { emit_pairs: 65_537, ..gpu },
             Shape { sort_bits: 3, ..gpu },
             Shape { sort_bits: 32, ..gpu },
-            Shape { sort_bits: 5, ..gpu },
+            Shape { sort_bits: 6, ..gpu },
             Shape { sort_bits: 8, sort_size: 1, sort_keys: 31, ..cpu },
         ];
         for shape in wrong {
