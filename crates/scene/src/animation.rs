@@ -51,7 +51,7 @@ pub struct Animation {
     pub(crate) tracks: Tracks,
     /// As it was when the scene was read; `None` where nothing has key-frames.
     pub(crate) keys: Option<KeyReader>,
-    /// Of the scene, once it was asked for.
+    /// Of all that is shown, once it was asked for.
     bounds: OnceLock<Option<Bounds>>,
 }
 
@@ -348,7 +348,7 @@ impl Animation {
         }
     }
 
-    /// As [`Scene::camera`], at a time. Without cameras in the scene it is one that frames the scene at time 0, so that it stands still.
+    /// As [`Scene::camera`], at a time. Without cameras in the scene it is that of [`Animation::frame`], so that it stands still.
     pub fn camera(&self, name: Option<&str>, time: f64) -> Option<Camera> {
         let number = self.scene.camera_number(name);
         match number.and_then(|number| self.tracks.cameras.get(number)) {
@@ -361,10 +361,44 @@ impl Animation {
         }
     }
 
-    /// As [`Scene::frame`], for every frame: the box of the scene at time 0 is computed when it is first asked for, and kept.
+    /// Whether the file says what a camera looks at. One of glTF has a direction alone, and its target is some point on the way.
+    pub fn has_target(&self, name: Option<&str>) -> bool {
+        let track = self.scene.camera_number(name).and_then(|number| self.tracks.cameras.get(number));
+        !matches!(track, Some(CameraTrack::Rig(_)))
+    }
+
+    /// As [`Scene::frame`], one camera for every frame. What is deformed, or moves as a whole, is shown wherever it comes in the course of
+    /// the animation, as far as up to 32 times of it tell (fewer for many vertices); key-frames count as they are at time 0. The box is
+    /// computed when it is first asked for, and kept.
     pub fn frame(&self, framing: &Framing) -> Camera {
-        let bounds = self.bounds.get_or_init(|| self.scene.bounds());
+        let bounds = self.bounds.get_or_init(|| self.scene.bounds().into_iter().chain(self.later_bounds()).reduce(Bounds::union));
         crate::frame_camera(&bounds.unwrap_or(Bounds::UNIT), framing)
+    }
+
+    /// The box of the deformed meshes after time 0.
+    fn later_bounds(&self) -> Option<Bounds> {
+        let deformed = || {
+            self.motions.iter().zip(&self.scene.meshes).enumerate().filter_map(|(at, (motion, mesh))| match motion {
+                Motion::Deformed(deformed) => Some((at, deformed, mesh)),
+                _ => None,
+            })
+        };
+        let work = deformed().map(|(_, deformed, _)| deformed.work()).fold(0, usize::saturating_add);
+        if work == 0 || self.duration <= 0.0 {
+            return None;
+        }
+        let times = (BOUNDS_WORK / work).clamp(2, 32);
+        let (mut pose, mut positions) = (Pose::default(), Vec::new());
+        let mut bounds = None;
+        for (at, deformed, mesh) in deformed() {
+            for step in 1..=times {
+                self.pose(at, self.duration * step as f64 / times as f64, &mut pose);
+                positions.clear();
+                positions.extend((0..deformed.positions.len()).map(|vertex| deformed.position(vertex, &pose)));
+                bounds = bounds.into_iter().chain(mesh.bounds_at(&positions)).reduce(Bounds::union);
+            }
+        }
+        bounds
     }
 
     /// The lights at a time: always as many as [`Scene::lights`], each of the same kind.
@@ -385,6 +419,38 @@ impl Animation {
         Ok(self.keys.clone().unwrap_or_default())
     }
 }
+
+impl Deformed {
+    /// Steps of [`Deformed::position`] for all vertices.
+    fn work(&self) -> usize {
+        self.positions.len().saturating_mul(1 + self.influences_each as usize + self.targets.len())
+    }
+
+    /// Where a vertex is in a pose.
+    fn position(&self, vertex: usize, pose: &Pose) -> [f32; 3] {
+        let mut at = self.positions.get(vertex).copied().unwrap_or([f32::NAN; 3]);
+        for (target, weight) in self.targets.iter().zip(&pose.weights) {
+            if let Some(offset) = target.positions.get(vertex) {
+                at = std::array::from_fn(|axis| at[axis] + offset[axis] * weight);
+            }
+        }
+        let moved = |joint: usize| {
+            let matrix = pose.matrices.get(joint).copied().unwrap_or([[f32::NAN; 4]; 3]);
+            matrix.map(|row| row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3])
+        };
+        let each = self.influences_each as usize;
+        match self.influences.get(vertex * each..(vertex + 1) * each) {
+            Some(own) if each > 0 => own.iter().fold([0.0; 3], |sum, influence| {
+                let part = moved(influence.joint as usize);
+                std::array::from_fn(|axis| sum[axis] + part[axis] * influence.weight)
+            }),
+            _ => moved(0),
+        }
+    }
+}
+
+/// What the box of an animation may cost, in steps of a few nanoseconds.
+const BOUNDS_WORK: usize = 1 << 24;
 
 /// Frames a second where no file says.
 pub const DEFAULT_FPS: f64 = 24.0;

@@ -114,8 +114,8 @@ fn open_gltf(bytes: Vec<u8>, path: &Path, folder: Option<&Path>, options: &LoadO
     let rig = Arc::new(loaded.rig);
     let track = |number: usize| RigTrack { rig: rig.clone(), number };
     animation.clips = loaded.clips;
+    animation.tracks.cameras = (0..rig.camera_count()).map(|at| CameraTrack::Rig(track(at))).collect();
     if rig.duration() > 0.0 {
-        animation.tracks.cameras = (0..rig.camera_count()).map(|at| CameraTrack::Rig(track(at))).collect();
         animation.tracks.lights = (0..rig.light_count()).map(|at| LightTrack::Rig(track(at))).collect();
         animation.set_course(&[rig.course()], None, None);
     }

@@ -266,9 +266,14 @@ impl Mesh {
 
     /// The box of all triangles whose vertices are finite; `None` where there is no such triangle.
     pub fn bounds(&self) -> Option<Bounds> {
+        self.bounds_at(&self.positions)
+    }
+
+    /// The same with its vertices elsewhere.
+    pub(crate) fn bounds_at(&self, positions: &[[f32; 3]]) -> Option<Bounds> {
         let mut bounds: Option<Bounds> = None;
         for triangle in &self.indices {
-            let corners = triangle.map(|index| self.positions.get(index as usize).copied().unwrap_or([f32::NAN; 3]));
+            let corners = triangle.map(|index| positions.get(index as usize).copied().unwrap_or([f32::NAN; 3]));
             if corners.as_flattened().iter().all(|value| value.is_finite()) {
                 for corner in corners {
                     bounds = Some(bounds.map_or(Bounds { min: corner, max: corner }, |bounds| bounds.with(corner)));

@@ -165,6 +165,54 @@ fn a_pane_is_seen_through_and_each_frame_is_the_one_rendered_alone() {
     assert_ne!(pixels(at, "f0.png"), pixels(at, "f2.png"));
 }
 
+#[test]
+fn the_automatic_camera_is_one_for_all_frames() {
+    let folder = super::folder();
+    let at = folder.path();
+    pane(at);
+    gridwalk(at, words("animate pane.gltf --size 16x12 --fps 2 --frames 0..2 -o f#.png")).expect(0);
+    for (frame, time) in ["0", "0.5", "1"].into_iter().enumerate() {
+        gridwalk(at, words(&format!("render pane.gltf --size 16x12 --time {time} -o alone.png"))).expect(0);
+        assert_eq!(pixels(at, "alone.png"), pixels(at, &format!("f{frame}.png")), "{time}");
+    }
+    assert_ne!(pixels(at, "f0.png"), pixels(at, "f2.png"));
+}
+
+/// A camera of glTF has a direction alone: it turns about the scene's middle, however far from the origin both are.
+#[test]
+fn a_camera_without_a_target_turns_about_what_there_is() {
+    let folder = super::folder();
+    let at = folder.path();
+    pane(at);
+    let mut json: serde_json::Value = serde_json::from_str(&fs::read_to_string(at.join("pane.gltf")).unwrap()).unwrap();
+    let nodes = json["nodes"].as_array_mut().unwrap();
+    nodes.push(serde_json::json!({ "children": [0, 1], "translation": [400.0, 5.0, -30.0] }));
+    nodes.push(serde_json::json!({ "camera": 0, "translation": [400.0, 5.0, -10.0] }));
+    json["scenes"][0]["nodes"] = serde_json::json!([2, 3]);
+    json["cameras"] = serde_json::json!([{ "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1 } }]);
+    fs::write(at.join("pane.gltf"), json.to_string()).unwrap();
+
+    // Where the wall is, of 40 x 30: its middle, and how many pixels it has.
+    let wall = |name: &str| {
+        let pixels = pixels(at, name);
+        let seen: Vec<usize> = pixels.chunks_exact(3).enumerate().filter(|(_, rgb)| rgb[1] < 60).map(|(pixel, _)| pixel).collect();
+        let middle = |part: fn(usize) -> usize| seen.iter().map(|&pixel| part(pixel) as f64 + 0.5).sum::<f64>() / seen.len() as f64;
+        ([middle(|pixel| pixel % 40), middle(|pixel| pixel / 40)], seen.len())
+    };
+    gridwalk(at, words("render pane.gltf --size 40x30 -o still.png")).expect(0);
+    gridwalk(at, words("animate pane.gltf --size 40x30 --turntable 2 --fps 4 -o f#.png")).expect(0);
+    assert_eq!(pixels(at, "f0.png"), pixels(at, "still.png"), "a turn begins where the camera stands");
+    // From the side there is nothing of it to be seen.
+    for frame in [0, 1, 3, 4, 5, 7] {
+        let (middle, count) = wall(&format!("f{frame}.png"));
+        assert!((middle[0] - 20.0).abs() < 2.0 && (middle[1] - 15.0).abs() < 1.0 && count > 100, "frame {frame}: {count} about {middle:?}");
+    }
+    // What stands in the middle has its size in parallel projection, too.
+    gridwalk(at, words("render pane.gltf --size 40x30 --ortho -o ortho.png")).expect(0);
+    let [(_, still), (_, ortho)] = [wall("still.png"), wall("ortho.png")];
+    assert!(still.abs_diff(ortho) < 50, "{still} and {ortho} pixels");
+}
+
 /// The decoded pixels of a file, all layers.
 fn without_text(folder: &Path, name: &str) -> Vec<(String, gridwalk_render::LayerData)> {
     let layers = gridwalk_render::image::read(&folder.join(name), gridwalk_render::image::ReadLimits::default()).unwrap();

@@ -674,6 +674,7 @@ fn cameras_and_lights_hang_on_nodes() {
     maker.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
     let scene = maker.scene();
     assert_eq!(scene.cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>(), ["eye", "side", "eye 2"]);
+    assert!(!maker.animation().has_target(None), "a direction is no target");
     let camera = scene.camera(None).unwrap();
     assert_eq!(camera.eye, [1.0, 2.0, 3.0]);
     near(&[camera.target[0], camera.target[2]], &[1.0, 3.0], 1e-5);

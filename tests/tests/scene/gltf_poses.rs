@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use gridwalk_scene::generate::Random;
-use gridwalk_scene::{Animation, AnimationOptions, LoadOptions, Motion, Pose, open};
+use gridwalk_scene::{Animation, AnimationOptions, Bounds, Camera, Framing, LoadOptions, Motion, Pose, frame_camera, open};
 use serde_json::{Value, json};
 
 use super::gltf::{I16, Maker, U8, U16};
@@ -677,6 +677,30 @@ fn cameras_and_lights_move_with_their_nodes() {
     assert_eq!(animation.scene.camera(Some("eye")), animation.camera(Some("eye"), 0.0));
     assert_eq!(animation.scene.lights, animation.lights(0.0));
     assert!(animation.camera(Some("ear"), 0.0).is_none());
+    assert!(!animation.has_target(None) && !animation.has_target(Some("eye")));
+}
+
+#[test]
+fn the_automatic_camera_shows_the_whole_clip() {
+    let framing = Framing { azimuth: 20.0, ..Framing::default() };
+    for seed in 0..8 {
+        let folder = random_file(&mut Random::new(seed)).write();
+        let animation = open_clip(&folder.path().join("a.glb"), None);
+        let mut bounds = animation.scene.bounds().unwrap();
+        for step in 1..=32 {
+            let time = animation.duration * f64::from(step) / 32.0;
+            for (position, _) in (0..animation.motions.len()).flat_map(|mesh| posed(&animation, mesh, time)) {
+                let point = position.map(|value| value as f32);
+                bounds = bounds.union(Bounds { min: point, max: point });
+            }
+        }
+        let (found, expected) = (animation.frame(&framing), frame_camera(&bounds, &framing));
+        let apart = |a: Camera, b: Camera| (0..3).map(|i| (a.eye[i] - b.eye[i]).abs() + (a.target[i] - b.target[i]).abs()).sum::<f32>();
+        let size = apart(expected, Camera { eye: expected.target, ..expected });
+        assert!(apart(found, expected) < 1e-4 * size, "{seed}: {found:?} is not {expected:?}");
+        // Negative control: the first frame alone is framed from elsewhere.
+        assert!(apart(animation.scene.frame(&framing), expected) > 1e-2 * size, "{seed}");
+    }
 }
 
 #[test]

@@ -37,6 +37,7 @@ fn a_camera_goes_from_key_to_key() {
     assert_eq!(at(2.5), at(99.0));
     assert_eq!(moving.camera(Some("b"), 1.0), moving.camera(Some("b"), 0.0));
     assert_eq!(moving.camera(Some("c"), 1.0), None);
+    assert!(moving.has_target(None) && moving.has_target(Some("b")));
 }
 
 #[test]

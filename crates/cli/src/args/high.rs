@@ -565,7 +565,7 @@ pub fn load_options(low: &low::Limits) -> LoadOptions {
 }
 
 /// The camera of a picture of `size` at a time: the one that is asked for, else the scene's, else one that shows everything. `turn` is how
-/// far it has turned about what it looks at, of a turntable.
+/// far it has turned about its target, of a turntable; one without a target turns about the middle of all.
 pub fn camera(view: &low::View, animation: &Animation, time: f64, size: [u32; 2], turn: Option<f64>) -> Result<Camera> {
     let scene = &animation.scene;
     let asked_for_frame = view.azimuth.is_some() || view.elevation.is_some() || view.zoom.is_some();
@@ -584,8 +584,11 @@ pub fn camera(view: &low::View, animation: &Animation, time: f64, size: [u32; 2]
         camera.up = view.up.unwrap_or(camera.up);
         camera
     };
-    let mut camera = if let Some(name) = &view.camera {
-        own(Some(camera_name(scene, name)?))
+    let own_name = view.camera.as_deref().map(|name| camera_name(scene, name)).transpose()?;
+    let automatic = asked_for_frame || scene.cameras.is_empty();
+    let has_target = own_name.is_none() && (view.eye.is_some() || automatic) || animation.has_target(own_name);
+    let mut camera = if own_name.is_some() {
+        own(own_name)
     } else if let Some(eye) = view.eye {
         Camera {
             eye,
@@ -594,7 +597,7 @@ pub fn camera(view: &low::View, animation: &Animation, time: f64, size: [u32; 2]
             vertical_fov_degrees: framing.vertical_fov_degrees,
             orthographic_height: None,
         }
-    } else if asked_for_frame || scene.cameras.is_empty() {
+    } else if automatic {
         framed()
     } else {
         own(None)
@@ -609,12 +612,16 @@ pub fn camera(view: &low::View, animation: &Animation, time: f64, size: [u32; 2]
     if across.iter().map(|value| value * value).sum::<f64>().sqrt() <= 1e-6 * distance * up.iter().map(|v| v * v).sum::<f64>().sqrt() {
         return Err(Failure::usage("the camera looks straight along its up direction; give another with --up"));
     }
+    let centre = || if has_target { camera.target } else { animation.frame(&framing).target };
+    let pivot = turn.map(|turn| (turn, centre()));
     if view.ortho && camera.orthographic_height.is_none() {
-        // What stands at the target keeps its size.
-        let half = (f64::from(camera.vertical_fov_degrees).to_radians() / 2.0).tan() * distance;
+        // What stands at the centre keeps its size.
+        let centre = centre();
+        let ahead = (0..3).map(|i| (f64::from(centre[i]) - f64::from(camera.eye[i])) * axis[i] / distance).sum::<f64>();
+        let half = (f64::from(camera.vertical_fov_degrees).to_radians() / 2.0).tan() * if ahead > 0.0 { ahead } else { distance };
         camera.orthographic_height = Some((2.0 * half) as f32);
     }
-    Ok(turn.map_or(camera, |turn| turned(&camera, framing.up, turn)))
+    Ok(pivot.map_or(camera, |(turn, pivot)| turned(&camera, pivot, framing.up, turn)))
 }
 
 /// The automatic view from as far away as shows everything from every side.
@@ -632,21 +639,28 @@ fn framed_all_round(animation: &Animation, framing: &Framing) -> Camera {
     camera
 }
 
-/// A camera after so many turns about the axis `up` through its target, to the right (Rodrigues' formula).
-fn turned(camera: &Camera, up: [f32; 3], turns: f64) -> Camera {
+/// A camera after so many turns about the axis `up` through a point, to the right (Rodrigues' formula).
+fn turned(camera: &Camera, pivot: [f32; 3], up: [f32; 3], turns: f64) -> Camera {
     let length = up.iter().map(|value| f64::from(*value).powi(2)).sum::<f64>().sqrt();
     let axis = up.map(|value| f64::from(value) / length);
+    let turns = turns.rem_euclid(1.0);
     // A whole turn ends exactly where it began.
-    let (sin, cos) = (turns.rem_euclid(1.0) * std::f64::consts::TAU).sin_cos();
+    if turns == 0.0 {
+        return *camera;
+    }
+    let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
     let rotate = |v: [f64; 3]| -> [f64; 3] {
         let along: f64 = (0..3).map(|i| axis[i] * v[i]).sum();
         let cross = [axis[1] * v[2] - axis[2] * v[1], axis[2] * v[0] - axis[0] * v[2], axis[0] * v[1] - axis[1] * v[0]];
         std::array::from_fn(|i| v[i] * cos + cross[i] * sin + axis[i] * along * (1.0 - cos))
     };
-    let target = camera.target.map(f64::from);
-    let offset = rotate(std::array::from_fn(|i| f64::from(camera.eye[i]) - target[i]));
+    let moved = |point: [f32; 3]| -> [f32; 3] {
+        let offset = rotate(std::array::from_fn(|i| f64::from(point[i]) - f64::from(pivot[i])));
+        std::array::from_fn(|i| (f64::from(pivot[i]) + offset[i]) as f32)
+    };
     Camera {
-        eye: std::array::from_fn(|i| (target[i] + offset[i]) as f32),
+        eye: moved(camera.eye),
+        target: moved(camera.target),
         up: rotate(camera.up.map(f64::from)).map(|value| value as f32),
         ..*camera
     }

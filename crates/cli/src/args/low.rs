@@ -297,7 +297,7 @@ pub struct Animate {
 
     #[command(flatten)]
     pub view: View,
-    /// Turn the camera once about what it looks at, in so many seconds
+    /// Turn the camera once about its target (the scene's middle for a camera of glTF, which has none), in so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = super::values::duration, help_heading = "Camera")]
     pub turntable: Option<f64>,
     #[command(flatten)]
@@ -376,7 +376,7 @@ impl Heatmap {
 /// Where the picture is taken from. Without any of these the scene's own first camera is used, or one that shows everything.
 #[derive(Args, Clone, Debug)]
 pub struct View {
-    /// A camera of the scene, by name or number [default: the one that the scene prefers, or one that shows everything]
+    /// A camera of the scene, by name or number [default: the one that the scene prefers, or one that shows everything at all times, but key-frames as at time 0]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "azimuth", "elevation", "zoom"], help_heading = "Camera")]
     pub camera: Option<String>,
     /// Position
