@@ -132,7 +132,7 @@ impl Run {
         }
         for kind in ["map", "cooperative"] {
             if !self.build_steps.is_empty() {
-                let sum = self.build_steps.iter().filter(|step| step.kind == kind).map(|step| step.ms).sum();
+                let sum = self.build_steps.iter().filter(|step| step.kind == kind).fold(0.0, |sum, step| sum + step.ms);
                 rows.push((format!("  all {kind}"), ms(Some(sum))));
             }
         }

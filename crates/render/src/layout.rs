@@ -10,6 +10,8 @@ pub(crate) const MATERIAL_MIRROR: u32 = 1;
 pub(crate) const MATERIAL_HEIGHT_MAP: u32 = 2;
 /// [`Material::flags`]: the opacity is a share, not a mask.
 pub(crate) const MATERIAL_BLEND: u32 = 4;
+/// [`Material::flags`]: the colours of vertices multiply the emission.
+pub(crate) const MATERIAL_UNLIT: u32 = 8;
 
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]

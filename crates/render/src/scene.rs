@@ -627,6 +627,9 @@ fn device_material(material: &Material, textures: &[Texture], has_opacities: boo
     if material.blend && (material.opacity < 1.0 || opacity_map.is_some() || has_opacities) {
         flags |= layout::MATERIAL_BLEND;
     }
+    if material.unlit {
+        flags |= layout::MATERIAL_UNLIT;
+    }
     let map = |map: Option<u32>| map.unwrap_or(layout::NO_MAP);
     layout::Material {
         diffuse: material.diffuse,

@@ -287,7 +287,7 @@ impl Renderer {
         stats.steps = timer.take();
         *self.kept() = Kept { queues: Some(batch.queues), timer: Some(timer) };
         let traces = ["closest_hit", "any_hit", "masked_closest_hit", "masked_any_hit", "light_pass"];
-        stats.trace_ms = stats.steps.iter().filter(|step| traces.contains(&step.name)).map(|step| step.ms).sum();
+        stats.trace_ms = stats.steps.iter().filter(|step| traces.contains(&step.name)).fold(0.0, |sum, step| sum + step.ms);
         let read = Instant::now();
         let layers = picture.finish()?;
         stats.readback_ms += read.elapsed().as_secs_f64() * 1e3;

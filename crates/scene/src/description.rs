@@ -864,6 +864,7 @@ impl Builder<'_> {
             emission: given(entry.emission, emission_map, defaults.emission),
             opacity,
             blend: entry.blend.unwrap_or(opacity < 1.0),
+            unlit: defaults.unlit,
             index_of_refraction: entry.index_of_refraction.map_or(defaults.index_of_refraction, |value| value.0),
             illumination,
             diffuse_map,

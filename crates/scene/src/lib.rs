@@ -31,7 +31,8 @@
 //! - a texture of metallic and roughness makes diffuse and specular textures, and its mean roughness the exponent;
 //! - alpha is cut at `alphaCutoff` for `MASK`; for `BLEND` a surface of opacity a (factor x texture x `COLOR_0`) shows a times itself, its
 //!   mirror and highlights included, and 1 - a times what lies behind, and lets 1 - a of all light through; both sides of all are seen;
-//! - `KHR_materials_unlit` emits its base colour; `KHR_materials_emissive_strength` multiplies the emission; emission lights nothing else.
+//! - `KHR_materials_unlit` emits its base colour (factor x texture x `COLOR_0`); `KHR_materials_emissive_strength` multiplies the emission;
+//!   emission lights nothing else.
 //!
 //! Textures of a material are looked up by the coordinates of its first one (base colour, metallic-roughness, emission, normals), with
 //! `KHR_texture_transform` put into them; one that wants others is not used, which a warning tells. So are textures that are not repeated,

@@ -157,6 +157,7 @@ fn resolve(assets: &mut Assets, from: &MtlMaterial, folder: &Path, file: &str) -
         emission: from.emission.unwrap_or(factor(emission_map, defaults.emission)),
         opacity,
         blend: opacity < 1.0,
+        unlit: defaults.unlit,
         index_of_refraction: from.index_of_refraction.unwrap_or(defaults.index_of_refraction),
         illumination: from.illumination.unwrap_or(if from.specular.is_some() { 2 } else { defaults.illumination }),
         diffuse_map,

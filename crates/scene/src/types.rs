@@ -37,8 +37,8 @@ pub struct Mesh {
     pub normals: Vec<[f32; 3]>,
     /// Texture coordinates, one a vertex, zeros where the file has none. (0, 0) is the lower left corner of a picture.
     pub uvs: Vec<[f32; 2]>,
-    /// Colours that multiply the diffuse colour of the material, linear RGB, one a vertex; empty where the file has none, which is as if all
-    /// were one.
+    /// Colours that multiply the diffuse colour of the material, of one that is [`Material::unlit`] the emission; linear RGB, one a vertex;
+    /// empty where the file has none, which is as if all were one.
     pub colours: Vec<[f32; 3]>,
     /// Opacities that multiply that of the material where that is [`Material::blend`], from 0 to 1, one a vertex; empty where the file has
     /// none, which is as if all were one.
@@ -67,6 +67,8 @@ pub struct Material {
     /// Whether what lies behind is seen through the surface by the share that its opacity leaves, and lit through it; else a surface with an
     /// `opacity_map` is cut where its opacity is below one half, and one without is solid whatever its opacity.
     pub blend: bool,
+    /// Whether [`Mesh::colours`] multiply the emission, as the colour of a surface that shows it without any light (`KHR_materials_unlit`).
+    pub unlit: bool,
     /// `Ni`.
     pub index_of_refraction: f32,
     /// `illum`: 3 and above reflects as a mirror, weighted by `specular`.
@@ -99,6 +101,7 @@ impl Default for Material {
             emission: [0.0; 3],
             opacity: 1.0,
             blend: false,
+            unlit: false,
             index_of_refraction: 1.0,
             illumination: 1,
             diffuse_map: None,

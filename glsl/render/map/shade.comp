@@ -70,7 +70,11 @@ void main() {
         surface.specular = mapped_colour(scene, material.specular, material.specular_map, point.uv);
         surface.reserved0 = 0.0;
         surface.reserved1 = 0.0;
-        radiance = mapped_colour(scene, material.emission, material.emission_map, point.uv) + scene.table.ambient * surface.diffuse;
+        vec3 emission = mapped_colour(scene, material.emission, material.emission_map, point.uv);
+        if ((material.flags & MATERIAL_UNLIT) != 0u) {
+            emission *= point.colour;
+        }
+        radiance = emission + scene.table.ambient * surface.diffuse;
         bool may_reflect = (flags & SHADE_LAST) == 0u;
         if (BLEND) {
             may_reflect = way.level < depth;

@@ -9,6 +9,7 @@ const uint NO_MAP = 0xFFFFFFFFu;
 const uint MATERIAL_MIRROR = 1u;
 const uint MATERIAL_HEIGHT_MAP = 2u;
 const uint MATERIAL_BLEND = 4u; // the opacity is a share, not a mask
+const uint MATERIAL_UNLIT = 8u; // the colours of vertices multiply the emission
 
 struct Material {
     vec3 diffuse;

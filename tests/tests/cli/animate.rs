@@ -113,8 +113,9 @@ fn a_frame_is_what_it_is_alone() {
     assert!(plane_error(0, &stills[4]) > 5.0, "the comparison tells frames apart");
 }
 
-/// A glTF file of an unlit red wall, and an unlit blue pane before it that goes to the right within a second.
-fn pane(folder: &Path) {
+/// A glTF file of an unlit red wall, and an unlit blue pane before it that goes to the right within a second; with a colour of all vertices
+/// if wanted.
+fn pane(folder: &Path, colour: Option<[f32; 4]>) -> serde_json::Value {
     let corners: [[f32; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
     let mut bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
     bytes.extend([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes()));
@@ -124,7 +125,8 @@ fn pane(folder: &Path) {
     let unlit = |colour: [f32; 4], mode: &str| serde_json::json!({ "pbrMetallicRoughness": { "baseColorFactor": colour }, "alphaMode": mode, "extensions": { "KHR_materials_unlit": {} } });
     let primitive =
         |material: u32| serde_json::json!({ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1, "material": material }] });
-    let json = serde_json::json!({
+    bytes.extend([colour.unwrap_or_default(); 4].as_flattened().iter().flat_map(|value| value.to_le_bytes()));
+    let mut json = serde_json::json!({
         "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0, 1] }],
         "nodes": [{ "mesh": 0, "translation": [0.0, 0.0, -1.0], "scale": [4.0, 4.0, 1.0] }, { "mesh": 1 }],
         "meshes": [primitive(0), primitive(1)],
@@ -134,12 +136,42 @@ fn pane(folder: &Path) {
             "samplers": [{ "input": 2, "output": 3 }],
             "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }]
         }],
-        "bufferViews": [view(0, 48), view(48, 12), view(60, 8), view(68, 24)],
-        "accessors": [accessor(0, 5126, 4, "VEC3"), accessor(1, 5123, 6, "SCALAR"), accessor(2, 5126, 2, "SCALAR"), accessor(3, 5126, 2, "VEC3")],
+        "bufferViews": [view(0, 48), view(48, 12), view(60, 8), view(68, 24), view(92, 64)],
+        "accessors": [accessor(0, 5126, 4, "VEC3"), accessor(1, 5123, 6, "SCALAR"), accessor(2, 5126, 2, "SCALAR"), accessor(3, 5126, 2, "VEC3"), accessor(4, 5126, 4, "VEC4")],
         "buffers": [{ "byteLength": bytes.len(), "uri": "pane.bin" }]
     });
+    if colour.is_some() {
+        for mesh in 0..2 {
+            json["meshes"][mesh]["primitives"][0]["attributes"]["COLOR_0"] = 4.into();
+        }
+    }
     fs::write(folder.join("pane.gltf"), json.to_string()).unwrap();
     fs::write(folder.join("pane.bin"), bytes).unwrap();
+    json
+}
+
+/// The base colour of an unlit surface is multiplied by that of its vertices, solid or seen through; what a surface emits otherwise is not.
+#[test]
+fn the_colours_of_vertices_are_those_of_unlit_surfaces() {
+    let folder = super::folder();
+    let at = folder.path();
+    let render = || {
+        gridwalk(at, words("render pane.gltf --size 16x12 --eye 0,0,6 --time 0 -o a.exr -q")).expect(0);
+        let layers = gridwalk_render::image::read(&at.join("a.exr"), gridwalk_render::image::ReadLimits::default()).unwrap();
+        let beauty = layers.get("beauty").unwrap().floats().unwrap().to_vec();
+        // Through the pane, and beside it.
+        [7, 1].map(|x| [0, 1, 2].map(|channel| beauty[(6 * 16 + x) * 4 + channel]))
+    };
+    pane(at, None);
+    assert_eq!(render(), [[0.75, 0.0, 0.25], [1.0, 0.0, 0.0]]);
+    let mut json = pane(at, Some([0.5, 1.0, 0.25, 0.5]));
+    assert_eq!(render(), [[0.5 * 0.875, 0.0, 0.25 * 0.125], [0.5, 0.0, 0.0]], "the alpha too, where it blends");
+    pane(at, Some([0.0, 1.0, 1.0, 1.0]));
+    assert_eq!(render(), [[0.0, 0.0, 0.25], [0.0; 3]]);
+    // Negative control: a wall that is black, and emits red.
+    json["materials"][0] = serde_json::json!({ "emissiveFactor": [1, 0, 0], "pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 1] } });
+    fs::write(at.join("pane.gltf"), json.to_string()).unwrap();
+    assert_eq!(render()[1], [1.0, 0.0, 0.0]);
 }
 
 /// What glTF says of `BLEND`: a quarter of blue over three quarters of red, and all red beside it; and it moves.
@@ -147,7 +179,7 @@ fn pane(folder: &Path) {
 fn a_pane_is_seen_through_and_each_frame_is_the_one_rendered_alone() {
     let folder = super::folder();
     let at = folder.path();
-    pane(at);
+    pane(at, None);
     let options = "--size 16x12 --eye 0,0,6";
     let run =
         gridwalk(at, words(&format!("animate pane.gltf {options} --fps 2 --frames 0..2 --aov id,depth -o f#.exr -o f#.png"))).expect(0);
@@ -169,7 +201,7 @@ fn a_pane_is_seen_through_and_each_frame_is_the_one_rendered_alone() {
 fn the_automatic_camera_is_one_for_all_frames() {
     let folder = super::folder();
     let at = folder.path();
-    pane(at);
+    pane(at, None);
     gridwalk(at, words("animate pane.gltf --size 16x12 --fps 2 --frames 0..2 -o f#.png")).expect(0);
     for (frame, time) in ["0", "0.5", "1"].into_iter().enumerate() {
         gridwalk(at, words(&format!("render pane.gltf --size 16x12 --time {time} -o alone.png"))).expect(0);
@@ -183,7 +215,7 @@ fn the_automatic_camera_is_one_for_all_frames() {
 fn a_camera_without_a_target_turns_about_what_there_is() {
     let folder = super::folder();
     let at = folder.path();
-    pane(at);
+    pane(at, None);
     let mut json: serde_json::Value = serde_json::from_str(&fs::read_to_string(at.join("pane.gltf")).unwrap()).unwrap();
     let nodes = json["nodes"].as_array_mut().unwrap();
     nodes.push(serde_json::json!({ "children": [0, 1], "translation": [400.0, 5.0, -30.0] }));
@@ -279,12 +311,43 @@ fn a_turntable_turns_once() {
     let (frames, last) = lines(&gridwalk(at, words("animate two.obj --size 20x15 --turntable 0.5 --fps 4 --json")).expect(0));
     assert_eq!((numbers(&frames), last["outputs"].clone()), (vec![0, 1], serde_json::json!(["two.apng"])));
     assert!(frames[1..].iter().all(|frame| frame["rebuilt"] == false), "a camera that moves changes no grid");
+    assert!(frames.iter().all(|frame| frame["build_steps"] == serde_json::json!([])), "the only grid was built before the first frame");
+    assert_eq!(last["rebuilt"].as_u64(), Some(0));
+    let run = gridwalk(at, words("animate two.obj --size 20x15 --turntable 0.5 --fps 4 --json --stats")).expect(0);
+    assert!(!run.text().contains("-0.0") && !run.stderr.contains("-0.0"), "{}{}", run.text(), run.stderr);
     // Named cameras turn too.
     let run = gridwalk(at, words("animate two.obj --size 20x15 --eye 0.4,0.5,4 --turntable 1 --fps 2 -o t#.png"));
     run.expect(0);
     gridwalk(at, words("render two.obj --size 20x15 --eye 0.4,0.5,4 -o r.png")).expect(0);
     assert_eq!(pixels(at, "t0.png"), pixels(at, "r.png"), "a turn begins where the camera stands");
     assert_ne!(pixels(at, "t1.png"), pixels(at, "r.png"));
+}
+
+/// The first frame has nothing before it that it could hide behind, and is not charged with what was done before it.
+#[test]
+fn times_are_those_of_their_frame() {
+    let folder = moving(4, &[]);
+    for options in ["", "--frames 2..3", "--fps 48 --frames 1..4"] {
+        let run = animate(folder.path(), &format!("-o m.apng --json --stats {options}")).expect(0);
+        let (frames, last) = lines(&run);
+        let ms = |line: &serde_json::Value, name: &str| line[name].as_f64().unwrap();
+        assert!(ms(&last, "open_ms") > 0.0 && run.stderr.contains("before   the first frame: "), "{}", run.stderr);
+        assert!(ms(&last, "setup_ms") >= last["first_build_ms"].as_f64().unwrap_or(0.0));
+        assert_eq!(ms(&frames[0], "hidden_ms"), 0.0, "{}", frames[0]);
+        for frame in &frames {
+            let names: Vec<&str> = frame["build_steps"].as_array().unwrap().iter().map(|step| step["name"].as_str().unwrap()).collect();
+            assert!(frame["rebuilt"] == true && names.iter().enumerate().all(|(at, name)| !names[..at].contains(name)), "{names:?}");
+            let parts: f64 = ["rebuild_ms", "trace_ms", "shade_ms", "deform_ms"].iter().filter_map(|name| frame[name].as_f64()).sum();
+            assert!(parts + ms(frame, "readback_ms") + ms(frame, "wait_ms") <= ms(frame, "frame_ms"), "{frame}");
+            // Both are sums, in another order.
+            assert!(ms(frame, "hidden_ms") <= ms(frame, "disk_ms") + ms(frame, "parse_ms") + ms(frame, "upload_ms") + 1e-9, "{frame}");
+        }
+        for name in ["disk_ms", "parse_ms", "upload_ms", "hidden_ms", "wait_ms", "encode_ms", "frame_ms"] {
+            let sum: f64 = frames.iter().map(|frame| ms(frame, name)).sum();
+            assert!((sum - ms(&last, name)).abs() < 1e-6, "{name}: {sum} and {}", last[name]);
+        }
+        assert!(ms(&last, "open_ms") + ms(&last, "setup_ms") + ms(&last, "frame_ms") <= ms(&last, "wall_s") * 1e3, "{last}");
+    }
 }
 
 #[test]

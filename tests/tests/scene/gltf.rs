@@ -532,7 +532,8 @@ fn emission_unlit_and_normal_maps() {
     let material = &scene.materials[1];
     assert_eq!((material.emission, material.diffuse, material.specular), ([1.0, 0.5, 0.0], [0.0; 3], [0.0; 3]));
     assert_eq!(texture(&scene, material.emission_map).pixels, [10, 20, 30, 255]);
-    assert_eq!(material.diffuse_map, None);
+    assert_eq!((material.diffuse_map, material.unlit), (None, true));
+    assert!(!Maker::with_material(json!({ "emissiveFactor": [1, 1, 1] })).scene().materials[1].unlit);
 }
 
 #[test]

@@ -277,7 +277,7 @@ pub struct Animate {
     /// Whether a file that exists is replaced
     #[arg(long, value_name = "WHEN", default_value = "always", help_heading = "Output")]
     pub overwrite: Overwrite,
-    /// Leave files that exist, and render only the frames that are missing
+    /// Leave files that exist, and render only the frames that are missing; any file of a frame's name counts as done, whatever is in it
     #[arg(long, help_heading = "Output")]
     pub skip_existing: bool,
     /// Colour samples of Y4M and video

@@ -209,7 +209,7 @@ impl Player {
             return Err(Error::Setting { setting: "time", value: time.to_string(), expected: "a finite number of seconds" });
         }
         let mut stats = SeekStats::new(self.grid.stats());
-        self.load(time, upcoming, &mut stats)?;
+        let busy_ms = self.load(time, upcoming, &mut stats)?;
         stats.grown += self.scene.append_surfaces(&self.context, &self.animation.scene)?;
         self.prepare(time)?;
         stats.grown += self.make_room()?;
@@ -219,9 +219,9 @@ impl Player {
             self.is_built &= !is_moved;
             self.submit(&work)?;
             stats.deform_steps = self.timer.take();
-            stats.deform_ms = stats.deform_steps.iter().filter(|step| step.kind == "map").map(|step| step.ms).sum();
+            stats.deform_ms = stats.deform_steps.iter().filter(|step| step.kind == "map").fold(0.0, |sum, step| sum + step.ms);
         }
-        self.tell_news(time, &mut stats)?;
+        self.tell_news(time, busy_ms, &mut stats)?;
         if !self.is_built {
             let capacity = *self.grid.capacity();
             self.grid.rebuild(&self.scene)?;
@@ -273,9 +273,11 @@ impl Player {
         &self.grid
     }
 
-    /// Sees to it that the key-frames of a time are in their slots, or on their way on the device, and that the next ones follow.
-    fn load(&mut self, time: f64, upcoming: &[f64], stats: &mut SeekStats) -> Result<()> {
-        let Some(loader) = &self.loader else { return Ok(()) };
+    /// Sees to it that the key-frames of a time are in their slots, or on their way on the device, and that the next ones follow. Returns the
+    /// milliseconds in which the thread can have worked for this seek alone: 0 where all was there.
+    fn load(&mut self, time: f64, upcoming: &[f64], stats: &mut SeekStats) -> Result<f64> {
+        let begin = Instant::now();
+        let Some(loader) = &self.loader else { return Ok(0.0) };
         let (meshes, animation) = (&mut self.meshes, &mut self.animation);
         // What was asked for but not begun may not be needed any more.
         for Request { mesh, key, slot } in loader.take_back() {
@@ -303,13 +305,15 @@ impl Player {
                 }
             }
         }
-        let begin = Instant::now();
+        let asked = Instant::now();
+        let mut busy_ms = 0.0;
         while shelves(meshes).any(|(_, shelf, next)| !keys(next).iter().all(|&key| shelf.is_settled(key))) {
             stats.grown += settle(meshes, animation, loader.wait()?, true);
             // The slot that is wanted may have been lent for something else till now.
             ask_for_needed(meshes, loader);
+            stats.wait_ms = asked.elapsed().as_secs_f64() * 1e3;
+            busy_ms = begin.elapsed().as_secs_f64() * 1e3;
         }
-        stats.wait_ms = begin.elapsed().as_secs_f64() * 1e3;
         for (_, shelf, next) in shelves(meshes) {
             for key in keys(next) {
                 if let Some(error) = shelf.failure(key) {
@@ -317,7 +321,7 @@ impl Player {
                 }
             }
         }
-        Ok(())
+        Ok(busy_ms)
     }
 
     /// Lights, poses, and which key-frames can be blended.
@@ -524,7 +528,7 @@ impl Player {
     }
 
     /// Adds what the key-frames took that this seek is the first to need.
-    fn tell_news(&mut self, time: f64, stats: &mut SeekStats) -> Result<()> {
+    fn tell_news(&mut self, time: f64, busy_ms: f64, stats: &mut SeekStats) -> Result<()> {
         let mut beside_ms = 0.0;
         for (mesh, shelf, _) in shelves(&mut self.meshes) {
             for key in keys(&self.animation.keys_at(mesh, time)) {
@@ -542,8 +546,8 @@ impl Player {
                 stats.warnings.extend(news.warnings);
             }
         }
-        // What was not waited for ran beside what the caller did before.
-        stats.hidden_ms = (beside_ms - stats.wait_ms).max(0.0);
+        // What this seek did not see done ran beside what the caller did before.
+        stats.hidden_ms = (beside_ms - busy_ms).max(0.0);
         Ok(())
     }
 }

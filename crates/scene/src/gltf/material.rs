@@ -152,7 +152,7 @@ impl<'a> Materials<'a> {
         if unlit {
             let map = base.and_then(|image| self.plain(image, true));
             (material.emission, material.emission_map) = (colour, map);
-            (material.diffuse, material.illumination) = ([0.0; 3], 0);
+            (material.diffuse, material.illumination, material.unlit) = ([0.0; 3], 0, true);
         } else {
             let rough = rough_slot.and_then(|slot| self.image_of(&place, slot));
             self.reflect(&mut material, Surface { colour, metallic, roughness, reflectance }, base, rough);

@@ -18,7 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::picture::{self, Shown};
 use crate::session::Session;
 use crate::{messages, output, progress, scene};
-use report::{FrameLine, Summary};
+use report::{Before, FrameLine, Summary};
 use writer::{Job, Writer};
 
 /// Frames whose key-frames are read ahead.
@@ -35,6 +35,7 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
     }
     let animate = high::Animate::new(low, quiet)?;
     let animation = scene::open(&animate.source, &animate.load, animate.clip.as_deref())?;
+    let opened = Instant::now();
     let (frames, rate) = animate.frames(&animation)?;
     // A movie of every nth frame keeps its speed.
     let too_slow = || Failure::usage("the frames are too far apart; lower the step of --frames");
@@ -51,12 +52,12 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
     let missing: Vec<u64> = frames.iter().copied().filter(|frame| writer.wants(*frame)).collect();
     let bar = progress::frames(animate.reports.progress, missing.len() as u64, "rendering");
 
-    let mut play = Play { animate: &animate, session, settings, common, rate, bar, interrupt, warned: false };
+    let first_build_ms = session.context.has_timestamps().then_some(session.player.grid().stats().ms);
+    let mut play = Play { animate: &animate, session, settings, common, rate, bar, interrupt, warned: false, begun: Instant::now() };
     let (sender, receiver) = sync_channel(WAITING);
-    let begun = Instant::now();
     let (rendered, written) = together(|| play.render(&missing, sender), || writer.run(receiver));
     drop(deferred);
-    let Play { session, settings, bar, .. } = play;
+    let Play { session, settings, bar, begun, .. } = play;
     bar.finish_and_clear();
 
     // An encoder that fails ends the rendering too: its error is the cause.
@@ -66,6 +67,8 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
     summary.outputs = written.outputs;
     summary.interrupted = matches!(ended, Ok(Ended::Interrupted));
     summary.error = ended.as_ref().err().map(|failure| crate::sentence(&failure.error));
+    let ms = |from: Instant, to: Instant| (to - from).as_secs_f64() * 1e3;
+    summary.before = Before { open_ms: ms(started, opened), setup_ms: ms(opened, begun), first_build_ms };
     summary.seconds(begun.elapsed().as_secs_f64(), session.seconds());
     if animate.reports.stats {
         eprint!("{}", report::table(&summary, &written.tally.rows));
@@ -159,12 +162,15 @@ struct Play<'a> {
     interrupt: &'a Interrupt,
     /// It was told that the frame at hand is the last one.
     warned: bool,
+    /// When all was ready for the first frame.
+    begun: Instant,
 }
 
 impl Play<'_> {
     /// Renders frames one after another and hands them over.
     fn render(&mut self, frames: &[u64], sender: SyncSender<Job>) -> Result<Ended> {
         let renderer = Renderer::new(&self.session.context)?;
+        self.begun = Instant::now();
         for (index, frame) in frames.iter().enumerate() {
             if self.interrupt.is_pending() {
                 return Ok(Ended::Interrupted);

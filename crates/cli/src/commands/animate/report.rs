@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gridwalk_render::image::Rate;
-use gridwalk_render::{BuildStats, Frame, RenderSettings, SeekStats};
+use gridwalk_render::{Frame, RenderSettings, SeekStats};
 use serde::Serialize;
 
 use crate::args::high;
@@ -95,15 +95,11 @@ impl FrameLine {
         let (stats, grid) = (&picture.stats, &sought.build.report);
         let of_device = |ms: f64| timestamps.then_some(ms);
         let steps: f64 = stats.steps.iter().map(|step| step.ms).sum();
-        // The first frame has two, if it is not at time 0 or not all of it stands still.
-        let builds: Vec<&BuildStats> = sought.first_build.iter().chain(sought.rebuilt.then_some(&sought.build)).collect();
-        let mut build_steps: Vec<Step> = Vec::new();
-        for step in builds.iter().flat_map(|build| &build.steps).filter(|_| timestamps) {
-            match build_steps.iter_mut().find(|known| known.name == step.name) {
-                Some(known) => known.ms += step.ms,
-                None => build_steps.push(Step { name: step.name.to_owned(), kind: step.kind, ms: step.ms }),
-            }
-        }
+        // The one by which the player was made is no frame's.
+        let build = sought.rebuilt.then_some(&sought.build);
+        let build_steps = build.filter(|_| timestamps).map_or_else(Vec::new, |build| {
+            build.steps.iter().map(|step| Step { name: step.name.to_owned(), kind: step.kind, ms: step.ms }).collect()
+        });
         FrameLine {
             header: Header::new("animate.frame"),
             frame,
@@ -111,7 +107,7 @@ impl FrameLine {
             outputs: Vec::new(),
             triangles: grid.triangles.into(),
             dropped: grid.dropped.into(),
-            rebuilt: !builds.is_empty(),
+            rebuilt: sought.rebuilt,
             resolution: grid.resolution,
             density: grid.density,
             pairs: grid.pairs.into(),
@@ -126,7 +122,7 @@ impl FrameLine {
                 hidden_ms: sought.hidden_ms,
                 wait_ms: sought.wait_ms,
                 deform_ms: of_device(sought.deform_ms),
-                rebuild_ms: of_device(builds.iter().map(|build| build.ms).sum()),
+                rebuild_ms: of_device(build.map_or(0.0, |build| build.ms)),
                 trace_ms: of_device(stats.trace_ms),
                 shade_ms: of_device(steps - stats.trace_ms),
                 readback_ms: stats.readback_ms,
@@ -137,6 +133,14 @@ impl FrameLine {
             heatmap: None,
         }
     }
+}
+
+/// Milliseconds before the first frame.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Before {
+    pub open_ms: f64,
+    pub setup_ms: f64,
+    pub first_build_ms: Option<f64>,
 }
 
 /// A frame's row in the table.
@@ -210,6 +214,8 @@ pub struct Summary {
     grid_bytes: u64,
     scratch_bytes: u64,
     #[serde(flatten)]
+    pub before: Before,
+    #[serde(flatten)]
     times: Times,
     frames_per_second: Option<f64>,
     wall_s: f64,
@@ -243,6 +249,7 @@ impl Summary {
             unfinished,
             grid_bytes: grid.grid_bytes,
             scratch_bytes: grid.scratch_bytes,
+            before: Before::default(),
             times,
             frames_per_second: None,
             wall_s: 0.0,
@@ -272,6 +279,10 @@ pub fn table(summary: &Summary, rows: &[Row]) -> String {
         text.push_str(&row(&line.frame.to_string(), &line.triangles.to_string(), &line.times));
     }
     text.push_str(&row("all (ms)", "", &summary.times));
+    let Before { open_ms, setup_ms, first_build_ms } = summary.before;
+    let build = first_build_ms.map_or_else(String::new, |ms| format!(", {ms:.1} ms of it the build of a grid at time 0"));
+    let _ =
+        writeln!(text, "before   the first frame: {open_ms:.1} ms to read the scene, {setup_ms:.1} ms to bring it to the device{build}");
     let Times { disk_ms, parse_ms, upload_ms, hidden_ms, wait_ms, .. } = summary.times;
     let streamed = disk_ms + parse_ms + upload_ms;
     if streamed > 0.0 {
