@@ -389,21 +389,11 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
     let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), References.token());
-    plan.step(Step::new(
-        &OVERLAP_EMIT,
-        groups.overlap_count,
-        push::OverlapEmit { grid, state, offsets, masks, triangles, keys_a, keys_b, values_a, values_b },
-    ));
-    // They write different words of the same arrays.
+    let emission = push::OverlapEmit { grid, state, offsets, masks, triangles, keys_a, keys_b, values_a, values_b };
+    plan.step(Step::new(&OVERLAP_EMIT, groups.overlap_count, emission));
+    // The two write different words, but of the same arrays, and hazards are told by arrays.
     plan.barrier(Barrier::Shader);
-    plan.step(
-        Step::new(
-            &OVERLAP_EMIT_LARGE,
-            argument(offset_of!(DispatchArguments, emit_large)),
-            push::OverlapEmitLarge { grid, state, offsets, masks, triangles, keys_a, keys_b, values_a, values_b },
-        )
-        .variant(exact),
-    );
+    plan.step(Step::new(&OVERLAP_EMIT_LARGE, argument(offset_of!(DispatchArguments, emit_large)), emission).variant(exact));
     for pass in 0..passes {
         let slot = 16 * pass as usize;
         let sort = argument(offset_of!(DispatchArguments, sort) + slot);

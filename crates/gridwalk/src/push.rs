@@ -224,19 +224,7 @@ pub(crate) struct OverlapEmit {
 }
 
 /// Of kernel `overlap_emit_large`.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct OverlapEmitLarge {
-    pub(crate) grid: u64,
-    pub(crate) state: u64,
-    pub(crate) offsets: u64,
-    pub(crate) masks: u64,
-    pub(crate) triangles: u64,
-    pub(crate) keys_a: u64,
-    pub(crate) keys_b: u64,
-    pub(crate) values_a: u64,
-    pub(crate) values_b: u64,
-}
+pub(crate) type OverlapEmitLarge = OverlapEmit;
 
 /// Of kernel `pair_args`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]

@@ -46,7 +46,7 @@ pub trait HostTree: Sync {
 
 /// A library as one of the contenders.
 pub struct HostRival<L: Library> {
-    library: L,
+    rival: L,
     tree: Option<L::Tree>,
     sets: Vec<(Arc<Set>, Found)>,
 }
@@ -59,7 +59,7 @@ enum Found {
 impl<L: Library> HostRival<L> {
     /// A rival without a tree.
     pub fn new(library: L) -> HostRival<L> {
-        HostRival { library, tree: None, sets: Vec::new() }
+        HostRival { rival: library, tree: None, sets: Vec::new() }
     }
 }
 
@@ -67,12 +67,12 @@ const NO_TREE: &str = "no tree was prepared";
 
 impl<L: Library> Contender for HostRival<L> {
     fn name(&self) -> &'static str {
-        self.library.name()
+        self.rival.name()
     }
 
     fn prepare(&mut self, tree: Tree) -> Result<()> {
         self.tree = None;
-        self.tree = Some(self.library.tree(tree)?);
+        self.tree = Some(self.rival.tree(tree)?);
         Ok(())
     }
 
@@ -91,7 +91,7 @@ impl<L: Library> Contender for HostRival<L> {
 
     fn trace(&mut self, set: usize) -> Result<f64> {
         let tree = self.tree.as_ref().context(NO_TREE)?;
-        let threads = self.library.threads();
+        let threads = self.rival.threads();
         Ok(match self.sets.get_mut(set) {
             Some((set, Found::Closest(hits))) => ask(threads, &set.rays, hits, |ray| tree.closest(ray)),
             Some((set, Found::Any(answers))) => ask(threads, &set.rays, answers, |ray| u32::from(tree.any(ray))),
