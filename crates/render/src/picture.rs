@@ -116,7 +116,13 @@ fn tiled_pixel(place: u32, width: u32, height: u32) -> usize {
     let column = place / (TILE * rows);
     let place = place - column * TILE * rows;
     let columns = TILE.min(width - column * TILE);
-    let (x, y) = (column * TILE + place % columns, band * TILE + place / columns);
+    let inside = if (columns, rows) == (TILE, TILE) {
+        // Bits 0, 2, 4 and 1, 3, 5.
+        [place, place >> 1].map(|bits| (bits & 1) | ((bits >> 1) & 2) | ((bits >> 2) & 4))
+    } else {
+        [place % columns, place / columns]
+    };
+    let (x, y) = (column * TILE + inside[0], band * TILE + inside[1]);
     y as usize * width as usize + x as usize
 }
 
@@ -130,6 +136,8 @@ mod tests {
             let mut places: Vec<usize> = (0..width * height).map(|place| tiled_pixel(place, width, height)).collect();
             if width >= 16 && height >= 8 {
                 assert!(places[..64].iter().all(|pixel| pixel % width as usize <= 7 && pixel / width as usize <= 7), "a tile");
+                let (row, square) = (width as usize, &places[..4]);
+                assert_eq!(square, [0, 1, row, row + 1], "Morton order inside of it");
             }
             places.sort_unstable();
             assert!(places.into_iter().eq(0..(width * height) as usize), "{width} x {height}");

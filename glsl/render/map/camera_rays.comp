@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_buffer_reference : require
 #extension GL_GOOGLE_include_directive : require
-// One ray a pixel of the batch, in tiles of 8 x 8 pixels: neighbours in the queue walk through the same cells.
+// One ray a pixel of the batch, in tiles of 8 x 8 pixels and in Morton order inside of these: neighbours in the queue walk through the
+// same cells, and the invocations of a subgroup, 4 to 64, cover a square of pixels or two side by side.
 
 #include "render/shared/queue.glsl"
 
@@ -36,7 +37,8 @@ layout(push_constant, std430) uniform CameraRays {
 
 const uint TILE = 8u;
 
-// The pixel at a place in the order of tiles. Tiles at the right and lower edge are smaller, so that no place is without a pixel.
+// The pixel at a place in the order of tiles. Tiles at the right and lower edge are smaller, so that no place is without a pixel; these go
+// row by row.
 uvec2 tiled_pixel(uint place, uvec2 size) {
     uint band = place / (TILE * size.x);
     place -= band * TILE * size.x;
@@ -44,7 +46,13 @@ uvec2 tiled_pixel(uint place, uvec2 size) {
     uint column = place / (TILE * height);
     place -= column * TILE * height;
     uint width = min(TILE, size.x - column * TILE);
-    return uvec2(column * TILE + place % width, band * TILE + place / width);
+    uvec2 inside = uvec2(place % width, place / width);
+    if (width == TILE && height == TILE) {
+        // Bits 0, 2, 4 and 1, 3, 5.
+        uvec2 spread = uvec2(place, place >> 1u) & 0x15u;
+        inside = (spread & 1u) | ((spread >> 1u) & 2u) | ((spread >> 2u) & 4u);
+    }
+    return uvec2(column, band) * TILE + inside;
 }
 
 void main() {

@@ -8,7 +8,8 @@ use gridwalk_scene::{Camera, Mesh};
 
 use crate::vector::{cross, dot, sub, unit};
 
-/// Side of the squares in which camera rays are ordered, so that neighbours in the picture are neighbours in memory.
+/// Side of the squares in which camera rays are ordered, in Morton order inside, so that neighbours in the picture are neighbours in memory:
+/// the order of `gridwalk render`.
 const TILE: u32 = 8;
 
 /// One ray through the middle of each pixel of a square picture, in tiles. `size` is rounded up to whole tiles.
@@ -22,8 +23,9 @@ pub fn camera_rays(camera: &Camera, size: u32) -> Vec<Ray> {
     (0..size * size)
         .map(|index| {
             let (tile, inside) = (index / (TILE * TILE), index % (TILE * TILE));
-            let x = (tile % tiles) * TILE + inside % TILE;
-            let y = (tile / tiles) * TILE + inside / TILE;
+            // Bits 0, 2, 4 of the place in the tile, and 1, 3, 5.
+            let [x, y] = [inside, inside >> 1].map(|bits| (bits & 1) | ((bits >> 1) & 2) | ((bits >> 2) & 4));
+            let (x, y) = ((tile % tiles) * TILE + x, (tile / tiles) * TILE + y);
             let screen = |pixel: u32| ((pixel as f32 + 0.5) / size as f32 * 2.0 - 1.0) * tangent;
             let (sx, sy) = (screen(x), -screen(y));
             let direction = unit(std::array::from_fn(|axis| forward[axis] + sx * right[axis] + sy * up[axis]));
@@ -86,8 +88,8 @@ mod tests {
         let right = unit(cross(sub(camera.target, camera.eye), camera.up));
         let across = |index: usize| dot(rays[index].direction, right);
         let upwards = |index: usize| rays[index].direction[1];
-        assert!(across(1) > across(0) && upwards(8) < upwards(0), "left to right and downwards inside a tile");
-        assert!(across(64) > across(7), "the second tile lies to the right of the first");
+        assert!(across(1) > across(0) && upwards(2) < upwards(0) && across(4) > across(1), "Morton order inside a tile");
+        assert!(across(64) > across(63) && across(63) > across(42), "the second tile lies to the right of the first");
     }
 
     #[test]
