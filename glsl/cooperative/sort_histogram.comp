@@ -15,7 +15,34 @@ layout(push_constant, std430) uniform SortHistogram {
     uint pass;
 };
 
-void main() {
+UintsIn keys_of(uint pass) { return UintsIn(writes_a(state.state.pass_count, pass) ? uvec2(keys_a) : uvec2(keys_b)); }
+
+void histogram_alone() {
+    uint tile = invocation_index();
+    uint pair_count = pairs_of(state, pass);
+    uint bits = state.state.digit_bits;
+    uint sentinel = state.state.sentinel;
+    uint tile_count = (pair_count + KEYS_EACH - 1u) / KEYS_EACH;
+    if (tile >= tile_count) {
+        return;
+    }
+    UintsIn keys = keys_of(pass);
+    uint count[1u << SORT_BITS];
+    for (uint digit = 0u; digit < 1u << bits; ++digit) {
+        count[digit] = 0u;
+    }
+    uint first = tile * KEYS_EACH;
+    uint last = min(first + KEYS_EACH, pair_count);
+    for (uint i = first; i < last; ++i) {
+        uint key = keys.word[i];
+        count[digit_of(key, pass, bits)] += uint(key != sentinel);
+    }
+    for (uint digit = 0u; digit < 1u << bits; ++digit) {
+        table.word[digit * tile_count + tile] = count[digit];
+    }
+}
+
+void histogram_together() {
     uint tile = workgroup_index();
     uint tile_size = gl_WorkGroupSize.x * KEYS_EACH;
     uint pair_count = pairs_of(state, pass);
@@ -25,9 +52,8 @@ void main() {
     if (tile >= tile_count) {
         return;
     }
-    UintsIn keys = UintsIn(writes_a(state.state.pass_count, pass) ? uvec2(keys_a) : uvec2(keys_b));
     uint first = tile * tile_size + gl_LocalInvocationID.x * KEYS_EACH;
-    count_run(keys, pass, bits, sentinel, first, min(first + KEYS_EACH, pair_count));
+    count_run(keys_of(pass), pass, bits, sentinel, first, min(first + KEYS_EACH, pair_count));
     barrier();
     for (uint digit = gl_LocalInvocationID.x; digit < 1u << bits; digit += gl_WorkGroupSize.x) {
         uint sum = 0u;
@@ -35,5 +61,13 @@ void main() {
             sum += counter[digit * gl_WorkGroupSize.x + column];
         }
         table.word[digit * tile_count + tile] = sum;
+    }
+}
+
+void main() {
+    if (SORT_ALONE) {
+        histogram_alone();
+    } else {
+        histogram_together();
     }
 }

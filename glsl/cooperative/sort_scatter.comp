@@ -17,7 +17,49 @@ layout(push_constant, std430) uniform SortScatter {
     uint pass;
 };
 
-void main() {
+struct Buffers {
+    UintsIn keys;
+    UintsIn values;
+    UintsOut keys_out;
+    UintsOut values_out;
+};
+
+Buffers buffers_of(uint pass) {
+    bool from_a = writes_a(state.state.pass_count, pass);
+    return Buffers(UintsIn(from_a ? uvec2(keys_a) : uvec2(keys_b)), UintsIn(from_a ? uvec2(values_a) : uvec2(values_b)),
+                   UintsOut(from_a ? uvec2(keys_b) : uvec2(keys_a)), UintsOut(from_a ? uvec2(values_b) : uvec2(values_a)));
+}
+
+void scatter_alone() {
+    uint tile = invocation_index();
+    uint pair_count = pairs_of(state, pass);
+    uint bits = state.state.digit_bits;
+    uint sentinel = state.state.sentinel;
+    uint tile_count = (pair_count + KEYS_EACH - 1u) / KEYS_EACH;
+    if (tile >= tile_count) {
+        return;
+    }
+    Buffers buffers = buffers_of(pass);
+    uint next[1u << SORT_BITS]; // where the next key of a digit goes
+    for (uint digit = 0u; digit < 1u << bits; ++digit) {
+        next[digit] = table.word[digit * tile_count + tile];
+    }
+    uint first = tile * KEYS_EACH;
+    uint last = min(first + KEYS_EACH, pair_count);
+    for (uint i = first; i < last; ++i) {
+        uint key = buffers.keys.word[i];
+        uint value = buffers.values.word[i];
+        uint digit = digit_of(key, pass, bits);
+        if (key != sentinel) {
+            uint destination = next[digit];
+            next[digit] = destination + 1u;
+            buffers.keys_out.word[destination] = key;
+            buffers.values_out.word[destination] = value;
+        }
+    }
+}
+
+void scatter_together() {
     uint tile = workgroup_index();
     uint tile_size = gl_WorkGroupSize.x * KEYS_EACH;
     uint pair_count = pairs_of(state, pass);
@@ -27,14 +69,10 @@ void main() {
     if (tile >= tile_count) {
         return;
     }
-    bool from_a = writes_a(state.state.pass_count, pass);
-    UintsIn keys = UintsIn(from_a ? uvec2(keys_a) : uvec2(keys_b));
-    UintsIn values = UintsIn(from_a ? uvec2(values_a) : uvec2(values_b));
-    UintsOut keys_out = UintsOut(from_a ? uvec2(keys_b) : uvec2(keys_a));
-    UintsOut values_out = UintsOut(from_a ? uvec2(values_b) : uvec2(values_a));
+    Buffers buffers = buffers_of(pass);
     uint first = tile * tile_size + gl_LocalInvocationID.x * KEYS_EACH;
     uint last = min(first + KEYS_EACH, pair_count);
-    count_run(keys, pass, bits, sentinel, first, last);
+    count_run(buffers.keys, pass, bits, sentinel, first, last);
     barrier();
     for (uint digit = gl_LocalInvocationID.x; digit < 1u << bits; digit += gl_WorkGroupSize.x) {
         uint next = table.word[digit * tile_count + tile];
@@ -47,13 +85,21 @@ void main() {
     }
     barrier();
     for (uint i = first; i < last; ++i) {
-        uint key = keys.word[i];
+        uint key = buffers.keys.word[i];
         uint slot = digit_of(key, pass, bits) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
         if (key != sentinel) {
             uint destination = counter[slot];
             counter[slot] = destination + 1u;
-            keys_out.word[destination] = key;
-            values_out.word[destination] = values.word[i];
+            buffers.keys_out.word[destination] = key;
+            buffers.values_out.word[destination] = buffers.values.word[i];
         }
+    }
+}
+
+void main() {
+    if (SORT_ALONE) {
+        scatter_alone();
+    } else {
+        scatter_together();
     }
 }

@@ -13,6 +13,7 @@ layout(constant_id = 1) const uint MAP_SIZE = 64;
 layout(constant_id = 2) const uint SORT_TILE = 8192;
 layout(constant_id = 3) const uint SCAN_TILE = 4096;
 layout(constant_id = 4) const uint PAIRS_EACH = 16;
+layout(constant_id = 5) const uint SORT_TILES = 1; // tiles a workgroup of the sort
 
 layout(push_constant, std430) uniform PairArgs {
     StateInOut state;
@@ -42,7 +43,7 @@ void main() {
     arguments.arguments.cell_ranges = uvec4(split_workgroups(count, MAP_SIZE), 0u);
     for (uint pass = 0u; pass < pass_capacity; ++pass) {
         bool used = pass < state.state.pass_count && count > 0u;
-        arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, 1u), 0u) : uvec4(0u);
+        arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, SORT_TILES), 0u) : uvec4(0u);
         arguments.arguments.table_scan[pass] = used ? uvec4(split_workgroups(table_count, SCAN_TILE), 0u) : uvec4(0u);
         arguments.arguments.table_spine[pass] = used ? uvec4(1u, 1u, 1u, 0u) : uvec4(0u);
     }

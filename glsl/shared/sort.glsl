@@ -1,5 +1,7 @@
-// A pass of the least-significant-digit radix sort over a tile of pairs. Each invocation counts a run of consecutive keys in a column of
-// counters of its own: no atomic and no subgroup operation, and the order of equal digits is kept.
+// A pass of the least-significant-digit radix sort over tiles of pairs. Each invocation counts a run of consecutive keys in counters of its
+// own: no atomic and no subgroup operation, and the order of equal digits is kept. A tile is the runs of a workgroup, whose counters are
+// columns in shared memory; or a run alone, whose counters are a private array, which drivers that run on a CPU reach by vector
+// instructions, as all memory but the shared.
 #ifndef SORT_GLSL
 #define SORT_GLSL
 
@@ -10,9 +12,10 @@ layout(local_size_x_id = 0) in;
 layout(local_size_x = 8) in;
 layout(constant_id = 1) const uint SORT_BITS = 10;
 layout(constant_id = 2) const uint KEYS_EACH = 1024;
+layout(constant_id = 3) const bool SORT_ALONE = false;
 
 // A row a digit, a column an invocation; at most 8,192 counters (32 KiB).
-shared uint counter[(1u << SORT_BITS) * gl_WorkGroupSize.x];
+shared uint counter[SORT_ALONE ? 1u : (1u << SORT_BITS) * gl_WorkGroupSize.x];
 
 // `bits` a digit, at most SORT_BITS.
 uint digit_of(uint key, uint pass, uint bits) { return (key >> (pass * bits)) & ((1u << bits) - 1u); }

@@ -16,12 +16,15 @@ pub struct Shape {
     pub reduce_items: u32,
     /// Bricks an invocation of `brick_reduce`.
     pub reduce_bricks: u32,
-    /// Most bits a digit of the sort, at least 4; 2^`sort_bits` <= 8 * `sort_size` * `sort_keys`.
+    /// Most bits a digit of the sort, at least 4; 2^`sort_bits` <= 8 * [`Shape::sort_tile`].
     pub sort_bits: u32,
-    /// Invocations a workgroup of the sort; 2^`sort_bits` * `sort_size` <= 8,192.
+    /// Invocations a workgroup of the sort; 2^`sort_bits` * `sort_size` <= 8,192 unless `sort_alone`.
     pub sort_size: u32,
     /// Keys an invocation of the sort.
     pub sort_keys: u32,
+    /// Whether an invocation's keys are a tile of the sort, counted in a private array; otherwise those of a workgroup are, in shared
+    /// memory. 2^`sort_bits` + `sort_keys` <= 16,384 then.
+    pub sort_alone: bool,
     /// Pairs an invocation of the emission.
     pub emit_pairs: u32,
 }
@@ -36,7 +39,8 @@ impl Shape {
         reduce_bricks: 4,
         sort_bits: 10,
         sort_size: 8,
-        sort_keys: 1024,
+        sort_keys: 8192,
+        sort_alone: true,
         emit_pairs: 64,
     };
 
@@ -50,6 +54,7 @@ impl Shape {
         sort_bits: 4,
         sort_size: 256,
         sort_keys: 16,
+        sort_alone: false,
         emit_pairs: 16,
     };
 
@@ -63,7 +68,7 @@ impl Shape {
             && self.scan_size.is_power_of_two()
             // Fewer bits need more passes than a plan records.
             && (4..=12).contains(&self.sort_bits)
-            && digits(self.sort_bits) * self.sort_size <= 8192
+            && if self.sort_alone { digits(self.sort_bits) + self.sort_keys <= 16_384 } else { digits(self.sort_bits) * self.sort_size <= 8192 }
             // The digit table of 2^28 pairs stays below 2^31 entries.
             && digits(self.sort_bits) <= 8 * self.sort_tile()
     }
@@ -83,9 +88,14 @@ impl Shape {
         self.scan_size * self.reduce_bricks
     }
 
-    /// Keys a workgroup of the sort.
+    /// Keys a tile of the sort.
     pub const fn sort_tile(&self) -> u32 {
-        self.sort_size * self.sort_keys
+        if self.sort_alone { self.sort_keys } else { self.sort_size * self.sort_keys }
+    }
+
+    /// Tiles a workgroup of the sort.
+    pub const fn sort_tiles(&self) -> u32 {
+        if self.sort_alone { self.sort_size } else { 1 }
     }
 
     /// Workgroups that reduce the scene box; at least one, so that an empty scene has a box of no triangle.
@@ -111,7 +121,9 @@ impl Shape {
             "BRICK_TILE" => self.brick_tile(),
             "SORT_BITS" => self.sort_bits,
             "KEYS_EACH" => self.sort_keys,
+            "SORT_ALONE" => self.sort_alone.into(),
             "SORT_TILE" => self.sort_tile(),
+            "SORT_TILES" => self.sort_tiles(),
             "PAIRS_EACH" => self.emit_pairs,
             _ => return None,
         })
@@ -146,7 +158,10 @@ mod tests {
             Shape { sort_bits: 3, ..gpu },
             Shape { sort_bits: 32, ..gpu },
             Shape { sort_bits: 6, ..gpu },
-            Shape { sort_bits: 8, sort_size: 1, sort_keys: 31, ..cpu },
+            Shape { sort_bits: 8, sort_size: 1, sort_keys: 31, ..gpu },
+            Shape { sort_bits: 10, sort_keys: 127, ..cpu },
+            Shape { sort_bits: 10, sort_keys: 15_361, ..cpu },
+            Shape { sort_bits: 10, sort_size: 16, sort_alone: false, ..cpu },
         ];
         for shape in wrong {
             assert!(!shape.is_valid(), "{shape:?}");

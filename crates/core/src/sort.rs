@@ -1,6 +1,8 @@
 //! Digits, numbers and buffers of the radix sort, as `shared/sort.glsl` and `shared/ping_pong.glsl` have them.
 
+use crate::dispatch::workgroups;
 use crate::layout::BuildState;
+use crate::shape::Shape;
 
 /// The digit of a key in a pass of `bits` a digit.
 pub const fn digit_of(key: u32, pass: u32, bits: u32) -> u32 {
@@ -22,4 +24,10 @@ pub const fn pairs_of(state: &BuildState, pass: u32) -> u32 {
 /// writes b.
 pub const fn writes_a(pass_count: u32, written: u32) -> bool {
     (pass_count.wrapping_sub(written)) & 1 == 1
+}
+
+/// Tiles of pairs that the workgroups of a dispatch sort, in order.
+pub fn sort_tiles(shape: &Shape, groups: [u32; 3]) -> impl Iterator<Item = u32> {
+    let each = shape.sort_tiles();
+    workgroups(groups).flat_map(move |group| group * each..(group + 1) * each)
 }

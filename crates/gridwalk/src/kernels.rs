@@ -358,7 +358,7 @@ pub static PAIR_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::Write), ("report", Access::ReadWrite)],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "PAIRS_EACH", 16)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "PAIRS_EACH", 16), (5, "SORT_TILES", 1)],
 };
 
 /// Kernel `report_spine`, from `glsl/cooperative/report_spine.comp`.
@@ -418,7 +418,7 @@ pub static SORT_HISTOGRAM: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::Read), ("keys_a", Access::Read), ("keys_b", Access::Read), ("table", Access::Write)],
-    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024)],
+    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0)],
 };
 
 /// Kernel `sort_scatter`, from `glsl/cooperative/sort_scatter.comp`.
@@ -437,7 +437,7 @@ pub static SORT_SCATTER: Kernel = Kernel {
         ("values_b", Access::ReadWrite),
         ("table", Access::Read),
     ],
-    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024)],
+    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0)],
 };
 
 /// Kernel `trace_args`, from `glsl/map/trace_args.comp`.

@@ -29,6 +29,7 @@ pub const ODD: Shape = Shape {
     sort_bits: 5,
     sort_size: 64,
     sort_keys: 7,
+    sort_alone: true,
     emit_pairs: 5,
 };
 
@@ -43,6 +44,7 @@ pub const TINY: Shape = Shape {
     sort_bits: 4,
     sort_size: 4,
     sort_keys: 1,
+    sort_alone: false,
     emit_pairs: 1,
 };
 

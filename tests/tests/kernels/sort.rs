@@ -44,7 +44,7 @@ fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
     let (mut from, mut to) = ((keys.to_vec(), places), (empty.clone(), empty.clone()));
     let mut expected = vec![CANARY; table_count as usize];
     for pass in 0..pass_count {
-        let groups = split_workgroups(tiles, 1);
+        let groups = split_workgroups(tiles, shape.sort_tiles());
         let scan_groups = split_workgroups(table_count, shape.scan_tile());
         gpu.launch(&SORT_HISTOGRAM, 0, &[&device_state, &keys_a, &keys_b, &table], &[pass], groups);
         sort_histogram(&shape, groups, &state, &from.0, &mut expected, pass);
@@ -91,7 +91,7 @@ fn sort_of_every_size() {
 
 #[test]
 fn sort_of_every_number_of_key_bits() {
-    for shape in [Shape::CPU, Shape::GPU, ODD] {
+    for shape in [Shape::CPU, Shape::GPU, ODD, Shape { sort_alone: false, ..ODD }] {
         let gpu = Gpu::with_shape(shape);
         for bits in 0..=28 {
             let seed = u64::from(bits);

@@ -34,7 +34,7 @@ pub fn pair_args(
     for pass in 0..pass_capacity as usize {
         let used = (pass as u32) < state.pass_count && count > 0;
         let groups = |groups| if used { four(groups) } else { [0; 4] };
-        arguments.sort[pass] = groups(split_workgroups(tiles, 1));
+        arguments.sort[pass] = groups(split_workgroups(tiles, shape.sort_tiles()));
         arguments.table_scan[pass] = groups(split_workgroups(state.table_count, shape.scan_tile()));
         arguments.table_spine[pass] = groups([1, 1, 1]);
     }

@@ -1,9 +1,8 @@
 //! Twin of kernel `sort_scatter`.
 
-use crate::dispatch::workgroups;
 use crate::layout::BuildState;
 use crate::shape::Shape;
-use crate::sort::{digit_of, pairs_of};
+use crate::sort::{digit_of, pairs_of, sort_tiles};
 
 /// Pairs as two arrays.
 pub struct Pairs<'a, T: ?Sized> {
@@ -30,7 +29,7 @@ pub fn sort_scatter(
     let tile_size = shape.sort_tile() as usize;
     let tile_count = pair_count.div_ceil(shape.sort_tile());
     let tiles = pairs.keys[..pair_count as usize].chunks(tile_size).zip(pairs.values.chunks(tile_size));
-    for (tile, (keys, values)) in workgroups(groups).zip(tiles) {
+    for (tile, (keys, values)) in sort_tiles(shape, groups).zip(tiles) {
         let mut next: Vec<u32> = (0..1u32 << bits).map(|digit| table[(digit * tile_count + tile) as usize]).collect();
         for (key, value) in keys.iter().zip(values).filter(|(key, _)| **key != state.sentinel) {
             let destination = &mut next[digit_of(*key, pass, bits) as usize];
