@@ -14,21 +14,23 @@ layout(push_constant, std430) uniform AnyHit {
     OccludedOut occluded;
     TraceStateInOut state;
     WalkStatesInOut walks;
-    // Of the variant with extras.
+    // Of the variant with extras, but for the order.
     MasksIn masks;
     GeometriesOut geometries; // of the hit that ended the search
+    OrderIn order; // if one is given
     uint mask;
     uint options;
 };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= state.state.ray_count) {
+    uint place = invocation_index();
+    if (place >= state.state.ray_count) {
         return;
     }
-    if (CONTINUE && walks.walk[index].given_up == 0u) {
+    if (CONTINUE && walks.walk[place].given_up == 0u) {
         return;
     }
+    TRACE_INDEX(index, place)
     Ray ray = rays.ray[index];
     GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
@@ -39,7 +41,7 @@ void main() {
     if (moved.valid) {
         Walk walk = walk_begin(header, moved);
         if (CONTINUE) {
-            walk_restore(walk, header, walks.walk[index]);
+            walk_restore(walk, header, walks.walk[place]);
         }
         if (EXTRAS) {
             TRACE_FILTER(walk, index)
@@ -51,7 +53,7 @@ void main() {
             if (LAST) {
                 result = GRIDWALK_UNFINISHED;
             } else {
-                walks.walk[index] = walk_save(walk, header);
+                walks.walk[place] = walk_save(walk, header);
                 state.state.unfinished = 1u;
             }
         }
@@ -61,6 +63,6 @@ void main() {
         if (EXTRAS && (options & OPTION_GEOMETRIES) != 0u) {
             geometries.geometry[index] = result == 1u ? gridwalk_geometry(grid, triangle) : uvec2(GRIDWALK_MISS);
         }
-        walks.walk[index].given_up = 0u;
+        walks.walk[place].given_up = 0u;
     }
 }

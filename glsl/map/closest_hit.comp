@@ -14,21 +14,23 @@ layout(push_constant, std430) uniform ClosestHit {
     TraceStateInOut state;
     WalkStatesInOut walks;
     CountersInOut counters; // read and written only by the counting variant
-    // Of the variant with extras.
+    // Of the variant with extras, but for the order.
     MasksIn masks;
     GeometriesOut geometries;
+    OrderIn order; // if one is given
     uint mask;
     uint options;
 };
 
 void main() {
-    uint index = invocation_index();
-    if (index >= state.state.ray_count) {
+    uint place = invocation_index();
+    if (place >= state.state.ray_count) {
         return;
     }
-    if (CONTINUE && walks.walk[index].given_up == 0u) {
+    if (CONTINUE && walks.walk[place].given_up == 0u) {
         return;
     }
+    TRACE_INDEX(index, place)
     Ray ray = rays.ray[index];
     GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
@@ -45,7 +47,7 @@ void main() {
     if (moved.valid) {
         Walk walk = walk_begin(header, moved);
         if (CONTINUE) {
-            walk_restore(walk, header, walks.walk[index]);
+            walk_restore(walk, header, walks.walk[place]);
         } else {
             seen = Counters(1u, 0u, uint(walk.reference < walk.list_end));
         }
@@ -57,7 +59,7 @@ void main() {
             if (LAST) {
                 hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_UNFINISHED);
             } else {
-                walks.walk[index] = walk_save(walk, header);
+                walks.walk[place] = walk_save(walk, header);
                 state.state.unfinished = 1u;
             }
         } else if (walk.best_triangle != GRIDWALK_MISS) {
@@ -72,7 +74,7 @@ void main() {
         if (EXTRAS && changed && (options & OPTION_GEOMETRIES) != 0u) {
             geometries.geometry[index] = found ? gridwalk_geometry(grid, hit.triangle) : uvec2(GRIDWALK_MISS);
         }
-        walks.walk[index].given_up = 0u;
+        walks.walk[place].given_up = 0u;
     }
     if (COUNT) {
         uvec4 before = CONTINUE ? counters.counters[index] : uvec4(0u);

@@ -15,6 +15,7 @@ layout(push_constant, std430) uniform CountHits {
     TraceStateInOut state;
     WalkStatesInOut walks;
     MasksIn masks;
+    OrderIn order; // if one is given
     uint mask;
     uint options;
     uint launch; // LAUNCH_* bits
@@ -46,15 +47,16 @@ bool count_run(inout Walk walk, GridHeader header, inout float entry, inout uint
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= state.state.ray_count) {
+    uint place = invocation_index();
+    if (place >= state.state.ray_count) {
         return;
     }
     bool continues = (launch & LAUNCH_CONTINUE) != 0u;
     bool last = (launch & LAUNCH_LAST) != 0u;
-    if (continues && walks.walk[index].given_up == 0u) {
+    if (continues && walks.walk[place].given_up == 0u) {
         return;
     }
+    TRACE_INDEX(index, place)
     GridHeader header = grid.header;
     MovedRay moved = move_ray(rays.ray[index], header);
     uint count = 0u;
@@ -63,7 +65,7 @@ void main() {
         Walk walk = walk_begin(header, moved);
         float entry = -GRIDWALK_INFINITY;
         if (continues) {
-            WalkState saved = walks.walk[index];
+            WalkState saved = walks.walk[place];
             walk_restore(walk, header, saved);
             walk_commit(walk, moved.s_max, 0.0, 0.0, GRIDWALK_MISS);
             entry = saved.best_u;
@@ -75,12 +77,12 @@ void main() {
             count = GRIDWALK_UNFINISHED;
         } else if (given_up) {
             walk_commit(walk, moved.s_max, entry, 0.0, count);
-            walks.walk[index] = walk_save(walk, header);
+            walks.walk[place] = walk_save(walk, header);
             state.state.unfinished = 1u;
         }
     }
     if (!given_up || last) {
         counts.count[index] = count;
-        walks.walk[index].given_up = 0u;
+        walks.walk[place].given_up = 0u;
     }
 }

@@ -16,6 +16,7 @@ layout(push_constant, std430) uniform NearestHits {
     WalkStatesInOut walks;
     MasksIn masks;
     GeometriesOut geometries; // as many as hits
+    OrderIn order; // if one is given
     uint mask;
     uint options;
     uint launch; // LAUNCH_* bits
@@ -91,20 +92,21 @@ bool nearest_run(inout Search search, inout Walk walk, GridHeader header, Ray ra
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= state.state.ray_count) {
+    uint place = invocation_index();
+    if (place >= state.state.ray_count) {
         return;
     }
     bool continues = (launch & LAUNCH_CONTINUE) != 0u;
     bool last = (launch & LAUNCH_LAST) != 0u;
     bool resume = (launch & LAUNCH_RESUME) != 0u;
-    if (continues && walks.walk[index].given_up == 0u) {
+    if (continues && walks.walk[place].given_up == 0u) {
         return;
     }
+    TRACE_INDEX(index, place)
     Ray ray = rays.ray[index];
     GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
-    Search search = Search(index, continues ? walks.walk[index].given_up - 1u : 0u, -GRIDWALK_INFINITY, 0u, 0u);
+    Search search = Search(index, continues ? walks.walk[place].given_up - 1u : 0u, -GRIDWALK_INFINITY, 0u, 0u);
     uint rest = GRIDWALK_MISS;
     bool given_up = false;
     bool has_floor = search.found > 0u || resume;
@@ -129,7 +131,7 @@ void main() {
         }
         Walk walk = walk_begin(header, moved);
         if (continues) {
-            WalkState saved = walks.walk[index];
+            WalkState saved = walks.walk[place];
             walk_restore(walk, header, saved);
             uint reference = walk.reference;
             walk_enter(walk, header);
@@ -145,7 +147,7 @@ void main() {
         } else if (given_up) {
             WalkState saved = walk_save(walk, header);
             saved.given_up = search.found + 1u;
-            walks.walk[index] = saved;
+            walks.walk[place] = saved;
             state.state.unfinished = 1u;
         }
     }
@@ -153,6 +155,6 @@ void main() {
         for (uint i = search.found; i < nearest; ++i) {
             write_hit(index * nearest + i, Hit(GRIDWALK_INFINITY, 0.0, 0.0, rest));
         }
-        walks.walk[index].given_up = 0u;
+        walks.walk[place].given_up = 0u;
     }
 }

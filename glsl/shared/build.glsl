@@ -46,6 +46,8 @@ struct DispatchArguments {
     uvec4 bounds_reduce;
     uvec4 overlap_count;
     uvec4 offsets_scan;
+    // Written only where rays are sorted; then only this and the first passes' of the sort are.
+    uvec4 ray_keys;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer StateIn { BuildState state; };

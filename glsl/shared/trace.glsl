@@ -31,6 +31,7 @@ const uint LAUNCH_RESUME = 4u;
 const uint OPTION_CULL = 3u; // GRIDWALK_CULL_* bits
 const uint OPTION_MASKS = 4u; // each ray has a mask of its own
 const uint OPTION_GEOMETRIES = 8u; // geometry and number within it are written
+const uint OPTION_ORDER = 16u; // rays are traced in the order that is given
 
 // A turn walks through empty cells to the next list, then tests triangles of it: so the invocations of a subgroup mostly do the same.
 // lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over all of its loops and over the divergent paths of
@@ -63,6 +64,13 @@ void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
 #define TRACE_FILTER(walk, index) \
     walk.cull = options & OPTION_CULL; \
     walk.mask = (options & OPTION_MASKS) != 0u ? mask & masks.word[index] : mask;
+
+// The index of the ray that is traced at a place; walks that are given up are kept by places, hits by indices.
+#define TRACE_INDEX(index, place) \
+    uint index = place; \
+    if ((options & OPTION_ORDER) != 0u) { \
+        index = order.word[place]; \
+    }
 
 // Walks until the end or for TURNS turns; true at the end.
 bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {

@@ -9,6 +9,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Ra
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer HitsInOut { Hit hit[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer HitsOut { Hit hit[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer RayCountIn { uint rays; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer OrderIn { uint word[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer MasksIn { uint word[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) writeonly buffer HitCountsOut { uint count[]; };
 // Geometry id, and number of the triangle within its geometry; GRIDWALK_MISS twice for a ray that hits nothing.
@@ -26,6 +27,15 @@ struct TraceState {
 
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer TraceStateOut { TraceState state; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer TraceStateInOut { TraceState state; };
+
+// The number of rays: max_rays itself, or at most that if it lies in memory.
+uint traced_rays(RayCountIn count, uint max_rays, uint indirect) {
+    uint rays = max_rays;
+    if (indirect != 0u) {
+        rays = min(rays, count.rays);
+    }
+    return rays;
+}
 
 // Where a walk was given up. Host twin: gridwalk_core::layout::WalkState.
 struct WalkState {

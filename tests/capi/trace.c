@@ -616,10 +616,12 @@ static void trace_records(const GridwalkTracer *tracer, const Mesh *torus, const
 
     GridwalkCapacity capacity = {ALL, 16 * ALL, 16 * ALL};
     GridwalkBuildSizes sizes;
-    GridwalkRegionSize trace_size;
+    GridwalkRegionSize trace_size, sort_size;
     check(gridwalk_build_sizes(tracer, &capacity, &sizes), "gridwalk_build_sizes");
     check(gridwalk_trace_scratch_size(tracer, RAYS, &trace_size), "gridwalk_trace_scratch_size");
+    check(gridwalk_ray_sort_scratch_size(tracer, RAYS, &sort_size), "gridwalk_ray_sort_scratch_size");
     Memory *grid = make_region(sizes.grid), *scratch = make_region(sizes.scratch), *report = make_region(sizes.report);
+    Memory *sort_scratch = make_region(sort_size), *order = make_memory(RAYS * 4, 0);
     Memory *trace_scratch = make_region(trace_size), *masks = make_memory(RAYS * 4, 0), *geometries = make_memory(RAYS * 8, 0);
     Memory *hits[3], *counts = make_memory(RAYS * 4, 0), *nearest = make_memory(RAYS * NEAREST * sizeof(GridwalkHit), 0);
     for (int i = 0; i < 3; ++i) hits[i] = make_memory(RAYS * sizeof(GridwalkHit), 0);
@@ -640,12 +642,24 @@ static void trace_records(const GridwalkTracer *tracer, const Mesh *torus, const
     refused(gridwalk_cmd_build(tracer, cmd, &bad), GRIDWALK_RESULT_ERROR_OPTION, "records");
     check(gridwalk_cmd_build(tracer, cmd, &build), "gridwalk_cmd_build");
     barrier(tracer, cmd);
+    GridwalkRaySortInfo sort;
+    ZERO(sort);
+    sort.struct_size = sizeof sort;
+    sort.ray_count = RAYS;
+    sort.rays = rays->region;
+    sort.order = order->region;
+    sort.scratch = sort_scratch->region;
+    check(gridwalk_cmd_sort_rays(tracer, cmd, grid->region.address, &sort), "gridwalk_cmd_sort_rays");
+    sort.order.size -= 4;
+    refused(gridwalk_cmd_sort_rays(tracer, cmd, grid->region.address, &sort), GRIDWALK_RESULT_ERROR_REGION, "order");
+    barrier(tracer, cmd);
     for (uint32_t i = 0; i < TRACES; ++i) {
-        /* The closest hit of both sides, of fronts, of backs; how many; the nearest of them. */
+        /* The closest hit of both sides, of fronts, of backs; how many; the nearest of them: but for the first in the order of the sort. */
         GridwalkTraceInfo trace = trace_info(rays, i < 3 ? hits[i] : i == 3 ? counts : nearest, trace_scratch, RAYS);
         trace.masks = masks->region;
         if (i == 0) trace.geometries = geometries->region;
         if (i < 3) trace.cull = i;
+        if (i > 0) trace.order = order->region;
         GridwalkTraceInfo bad_trace = trace;
         bad_trace.cull = 3;
         refused(gridwalk_cmd_closest_hit(tracer, cmd, grid->region.address, &bad_trace), GRIDWALK_RESULT_ERROR_OPTION, "cull");
@@ -670,6 +684,13 @@ static void trace_records(const GridwalkTracer *tracer, const Mesh *torus, const
         flat[odd].triangles = triangles[odd];
         for (int i = 0; i < 3; ++i)
             flatten(&flat[odd], i == 0 ? &part : i == 1 ? torus : ground, &record[i], (int)visible[i] & (1 + odd));
+    }
+    static unsigned char named[RAYS];
+    for (int i = 0, moved = 0; i < RAYS; ++i) {
+        const uint32_t index = ((const uint32_t *)order->data)[i];
+        if (index >= RAYS || named[index]++) fail("the order names each ray once");
+        moved += index != (uint32_t)i;
+        if (i == RAYS - 1 && !moved) fail("the order is another than the rays'");
     }
     for (int i = 0; i < RAYS; ++i) {
         const GridwalkRay *ray = (const GridwalkRay *)rays->data + i;

@@ -6,8 +6,8 @@ use gridwalk::ash::vk;
 use gridwalk::kernel::Kernel;
 use gridwalk::plan::Item;
 use gridwalk::{
-    BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, Hit, Ray, RayCount, Region, Report, Shape, Timestamps, TraceInfo, Tracer,
-    cmd_barrier,
+    BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, Hit, Ray, RayCount, RaySortInfo, Region, Report, Shape, Timestamps, TraceInfo,
+    Tracer, cmd_barrier,
 };
 use gridwalk_core::grid::brick_resolution;
 use gridwalk_core::layout::{Brick, GridHeader};
@@ -66,6 +66,8 @@ pub struct TraceOptions<'a> {
     pub resume: Option<&'a [Hit]>,
     /// Counts steps, tests and cells.
     pub count: bool,
+    /// Traces in this order, which may be one of a part of the rays.
+    pub order: Option<&'a [u32]>,
 }
 
 /// The device of the tests. Validation is on unless `GRIDWALK_VALIDATE=0`; each message fails the test that asks next.
@@ -567,6 +569,8 @@ impl Gpu {
         }
         let counters = self.guarded("counters", rays.len().max(1) as u64 * 16);
         let number = self.upload("ray count", &[options.indirect.unwrap_or(0)]);
+        let order = self.upload("order", options.order.unwrap_or(&[]));
+        let max = options.order.map_or(max, |order| order.len() as u32);
         let scratch = self.guarded("trace scratch", self.tracer.trace_scratch_size(max).unwrap().size);
         let count = match options.indirect {
             Some(_) => RayCount::Indirect { count: number.region(), max },
@@ -575,17 +579,37 @@ impl Gpu {
         let info = TraceInfo {
             resume: options.resume.is_some(),
             counters: options.count.then(|| counters.region()),
+            order: options.order.map(|_| order.region()),
             ..TraceInfo::new(ray_memory.region(), hits.region(), count, scratch.region())
         };
         self.submit(|cmd| {
             // SAFETY: all memory lives until the submission has ended, which `submit` waits for.
             unsafe { self.tracer.cmd_closest_hit(cmd, built.grid.region().address, &info) }.unwrap();
         });
-        for memory in [&ray_memory, &hits, &counters, &number, &scratch, &built.grid] {
+        for memory in [&ray_memory, &hits, &counters, &number, &order, &scratch, &built.grid] {
             memory.check();
         }
         self.check_validation();
         (hits.read(0, rays.len()), if options.count { counters.read(0, rays.len()) } else { Vec::new() })
+    }
+
+    /// The order of a sort of rays; with an indirect number, words beyond it keep the canary.
+    pub fn sort_rays(&self, built: &Built, rays: &[Ray], indirect: Option<u32>) -> Vec<u32> {
+        let max = rays.len() as u32;
+        let (ray_memory, order) = (self.upload("rays", rays), self.guarded("order", (4 * rays.len() as u64).max(4)));
+        let number = self.upload("ray count", &[indirect.unwrap_or(0)]);
+        let scratch = self.guarded("ray sort scratch", self.tracer.ray_sort_scratch_size(max).unwrap().size);
+        let count = indirect.map_or(RayCount::Direct(max), |_| RayCount::Indirect { count: number.region(), max });
+        let info = RaySortInfo::new(ray_memory.region(), count, order.region(), scratch.region());
+        self.submit(|cmd| {
+            // SAFETY: as above.
+            unsafe { self.tracer.cmd_sort_rays(cmd, built.grid.region().address, &info) }.unwrap();
+        });
+        for memory in [&ray_memory, &order, &number, &scratch, &built.grid] {
+            memory.check();
+        }
+        self.check_validation();
+        order.read(0, rays.len())
     }
 
     /// Whether rays hit anything, their number being in memory. Results of rays beyond it keep the canary.

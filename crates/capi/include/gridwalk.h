@@ -626,6 +626,12 @@ typedef struct GridwalkTraceInfo {
      */
     struct GridwalkRegion geometries;
     /**
+     * A `uint32_t` a ray: the indices of the rays in the order in which they are traced, as `gridwalk_cmd_sort_rays` makes it; what belongs
+     * to a ray lies at its index as ever. `ray_count` is then the number of indices, which are below the number of rays and differ; the
+     * other regions hold all rays. Address 0: the rays as they are.
+     */
+    struct GridwalkRegion order;
+    /**
      * Mask of all rays: a geometry is hit only if its mask shares a bit with it. 0: 0xFFFFFFFF, which is also the mask of a mesh without
      * a record.
      */
@@ -640,6 +646,36 @@ typedef struct GridwalkTraceInfo {
      */
     VkBool32 resume;
 } GridwalkTraceInfo;
+
+/**
+ * A sort of rays.
+ */
+typedef struct GridwalkRaySortInfo {
+    /**
+     * `sizeof(GridwalkRaySortInfo)`.
+     */
+    uint32_t struct_size;
+    /**
+     * The number of rays; with an indirect count its bound.
+     */
+    uint32_t ray_count;
+    /**
+     * `GridwalkRay`s; the address is a multiple of 16.
+     */
+    struct GridwalkRegion rays;
+    /**
+     * Where the order goes, a `uint32_t` a ray: for `GridwalkTraceInfo::order`.
+     */
+    struct GridwalkRegion order;
+    /**
+     * Memory of the sort: `gridwalk_ray_sort_scratch_size`. Not needed by the traces that follow, whose scratch it may be.
+     */
+    struct GridwalkRegion scratch;
+    /**
+     * Address 0: as many rays as `ray_count`. Otherwise a `uint32_t` there says how many.
+     */
+    struct GridwalkRegion indirect_count;
+} GridwalkRaySortInfo;
 
 /**
  * A ray in device memory.
@@ -837,6 +873,16 @@ GridwalkResult gridwalk_trace_scratch_size(const struct GridwalkTracer *tracer,
                                            struct GridwalkRegionSize *size);
 
 /**
+ * Tells what the scratch of a sort of at most so many rays needs.
+ *
+ * # Safety
+ * The tracer is alive; `size` can be written.
+ */
+GridwalkResult gridwalk_ray_sort_scratch_size(const struct GridwalkTracer *tracer,
+                                              uint32_t max_rays,
+                                              struct GridwalkRegionSize *size);
+
+/**
  * Writes the name of a build's step: of the one between timestamps `step` and `step + 1`. `name` has room for `name_size` bytes; a name that is
  * longer is cut. No name has more than 63.
  *
@@ -929,6 +975,19 @@ GridwalkResult gridwalk_cmd_nearest_hits(const struct GridwalkTracer *tracer,
                                          VkDeviceAddress grid,
                                          const struct GridwalkTraceInfo *info,
                                          uint32_t nearest);
+
+/**
+ * Records a sort of rays: makes the order in which rays whose walks through the grid at `grid` begin in the same part of it and in the same
+ * direction follow one another, for `GridwalkTraceInfo::order`. It pays for many rays of which neighbours go different ways. Put a barrier
+ * between it and the traces, as behind a trace.
+ *
+ * # Safety
+ * As for `gridwalk_cmd_closest_hit`.
+ */
+GridwalkResult gridwalk_cmd_sort_rays(const struct GridwalkTracer *tracer,
+                                      VkCommandBuffer command_buffer,
+                                      VkDeviceAddress grid,
+                                      const struct GridwalkRaySortInfo *info);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -9,7 +9,7 @@ use gridwalk::ash::vk::{
 };
 use gridwalk::{
     Access, BuildInfo, BuildOptions, Capacity, Cull, DeviceDesc, GRIDWALK_GLSL, GRIDWALK_SLANG, Geometry, GeometryRecord, Input, Overlap,
-    RayCount, Records, Region, RegionSize, Timestamps, TraceInfo, Tracer, cmd_barrier, requirements,
+    RayCount, RaySortInfo, Records, Region, RegionSize, Timestamps, TraceInfo, Tracer, cmd_barrier, requirements,
 };
 
 use crate::error::{self, Failure, Result, Text, guard};
@@ -18,7 +18,7 @@ use crate::load;
 use crate::types::{
     GRIDWALK_CULL_BACK, GRIDWALK_CULL_FRONT, GRIDWALK_CULL_NONE, GRIDWALK_OVERLAP_BOX, GRIDWALK_OVERLAP_EXACT, GRIDWALK_VERSION_MAJOR,
     GRIDWALK_VERSION_MINOR, GRIDWALK_VERSION_PATCH, GridwalkBuildInfo, GridwalkBuildSizes, GridwalkCapacity, GridwalkDeviceDesc,
-    GridwalkGeometryRecord, GridwalkRegion, GridwalkRegionSize, GridwalkResult, GridwalkTraceInfo, GridwalkTracer,
+    GridwalkGeometryRecord, GridwalkRaySortInfo, GridwalkRegion, GridwalkRegionSize, GridwalkResult, GridwalkTraceInfo, GridwalkTracer,
     PFN_vkGetInstanceProcAddr,
 };
 
@@ -194,6 +194,25 @@ pub unsafe extern "C" fn gridwalk_trace_scratch_size(
     })
 }
 
+/// Tells what the scratch of a sort of at most so many rays needs.
+///
+/// # Safety
+/// The tracer is alive; `size` can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridwalk_ray_sort_scratch_size(
+    tracer: *const GridwalkTracer,
+    max_rays: u32,
+    size: *mut GridwalkRegionSize,
+) -> GridwalkResult {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let tracer = unsafe { reference(tracer, "tracer")? };
+        let found = tracer.tracer.ray_sort_scratch_size(max_rays)?;
+        // SAFETY: the caller's contract.
+        unsafe { write(size, "size", found.into()) }
+    })
+}
+
 /// Writes the name of a build's step: of the one between timestamps `step` and `step + 1`. `name` has room for `name_size` bytes; a name that is
 /// longer is cut. No name has more than 63.
 ///
@@ -357,6 +376,30 @@ pub unsafe extern "C" fn gridwalk_cmd_nearest_hits(
     unsafe { trace(tracer, command_buffer, info, |tracer, info| tracer.cmd_nearest_hits(command_buffer, grid, info, nearest)) }
 }
 
+/// Records a sort of rays: makes the order in which rays whose walks through the grid at `grid` begin in the same part of it and in the same
+/// direction follow one another, for `GridwalkTraceInfo::order`. It pays for many rays of which neighbours go different ways. Put a barrier
+/// between it and the traces, as behind a trace.
+///
+/// # Safety
+/// As for `gridwalk_cmd_closest_hit`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridwalk_cmd_sort_rays(
+    tracer: *const GridwalkTracer,
+    command_buffer: VkCommandBuffer,
+    grid: VkDeviceAddress,
+    info: *const GridwalkRaySortInfo,
+) -> GridwalkResult {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let (tracer, info) = unsafe { (recorder(tracer, command_buffer)?, read_growing(info)?) };
+        let count = ray_count(info.ray_count, &info.indirect_count);
+        let sort = RaySortInfo::new(info.rays.into(), count, info.order.into(), info.scratch.into());
+        // SAFETY: the caller's contract.
+        unsafe { tracer.cmd_sort_rays(command_buffer, grid, &sort)? };
+        Ok(())
+    })
+}
+
 /// Records a trace by one of the library's functions.
 ///
 /// # Safety
@@ -413,11 +456,15 @@ fn build_options(info: &GridwalkBuildInfo) -> Result<BuildOptions> {
     })
 }
 
+fn ray_count(count: u32, indirect: &GridwalkRegion) -> RayCount {
+    match indirect.address {
+        0 => RayCount::Direct(count),
+        _ => RayCount::Indirect { count: (*indirect).into(), max: count },
+    }
+}
+
 fn trace_info(info: &GridwalkTraceInfo) -> Result<TraceInfo> {
-    let count = match info.indirect_count.address {
-        0 => RayCount::Direct(info.ray_count),
-        _ => RayCount::Indirect { count: info.indirect_count.into(), max: info.ray_count },
-    };
+    let count = ray_count(info.ray_count, &info.indirect_count);
     let optional = |given: GridwalkRegion| (given.address != 0).then(|| given.into());
     let (rays, hits, scratch) = (info.rays.into(), info.hits.into(), info.scratch.into());
     Ok(TraceInfo {
@@ -432,6 +479,7 @@ fn trace_info(info: &GridwalkTraceInfo) -> Result<TraceInfo> {
             other => return Err(Failure::Option(format!("cull = {other}: 0 (none), 1 (back) or 2 (front)"))),
         },
         geometries: optional(info.geometries),
+        order: optional(info.order),
         ..TraceInfo::new(rays, hits, count, scratch)
     })
 }

@@ -3,7 +3,7 @@
 use std::mem::MaybeUninit;
 
 use crate::error::{Failure, Result};
-use crate::types::{GridwalkBuildInfo, GridwalkDeviceDesc, GridwalkTraceInfo};
+use crate::types::{GridwalkBuildInfo, GridwalkDeviceDesc, GridwalkRaySortInfo, GridwalkTraceInfo};
 
 /// A structure that may grow at its end, and whose first field is its size in bytes as its writer knows it.
 ///
@@ -31,6 +31,12 @@ unsafe impl Growing for GridwalkBuildInfo {
 // SAFETY: as above.
 unsafe impl Growing for GridwalkTraceInfo {
     const NAME: &'static str = "GridwalkTraceInfo";
+    const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+// SAFETY: as above.
+unsafe impl Growing for GridwalkRaySortInfo {
+    const NAME: &'static str = "GridwalkRaySortInfo";
     const FIRST_SIZE: usize = size_of::<Self>();
 }
 

@@ -234,6 +234,18 @@ fn trace() -> GridwalkTraceInfo {
     }
 }
 
+fn ray_sort() -> GridwalkRaySortInfo {
+    let struct_size = size_of::<GridwalkRaySortInfo>() as u32;
+    GridwalkRaySortInfo {
+        struct_size,
+        ray_count: 100,
+        rays: region(3200),
+        order: region(400),
+        scratch: region(1 << 20),
+        indirect_count: region(4),
+    }
+}
+
 const COMMAND_BUFFER: u64 = 9;
 
 #[test]
@@ -241,7 +253,8 @@ fn recording_allocates_nothing() {
     let tracer = Tracer::new();
     let (build, trace) = (build(&tracer), trace());
     let records = GridwalkBuildInfo { geometry: zeroed(), records: region(128 * 10), record_count: 10, timestamp_pool: zeroed(), ..build };
-    let all = GridwalkTraceInfo { masks: region(400), mask: 5, cull: GRIDWALK_CULL_BACK, geometries: region(2400), resume: 1, ..trace };
+    let sorted = GridwalkTraceInfo { order: region(400), ..trace };
+    let all = GridwalkTraceInfo { masks: region(400), mask: 5, cull: GRIDWALK_CULL_BACK, geometries: region(2400), resume: 1, ..sorted };
     let answers = GridwalkTraceInfo { resume: 0, ..all };
     let counts = GridwalkTraceInfo { geometries: zeroed(), ..answers };
     let nearest = GridwalkTraceInfo { hits: region(4800), ..all };
@@ -268,10 +281,11 @@ fn recording_allocates_nothing() {
                 gridwalk_cmd_any_hit(tracer.0, cmd, 4096, &answers),
                 gridwalk_cmd_count_hits(tracer.0, cmd, 4096, &counts),
                 gridwalk_cmd_nearest_hits(tracer.0, cmd, 4096, &nearest, 3),
+                gridwalk_cmd_sort_rays(tracer.0, cmd, 4096, &ray_sort()),
             ]
         };
         let after = (ALLOCATIONS.get(), COMMANDS.get());
-        assert_eq!(results, [GridwalkResult::Ok; 9], "{}", message());
+        assert_eq!(results, [GridwalkResult::Ok; 10], "{}", message());
         assert!(after.1 > before.1 + 100, "{} commands", after.1 - before.1);
         assert!(round == 0 || after.0 == before.0, "{} allocations", after.0 - before.0);
     }
@@ -293,11 +307,15 @@ fn what_is_refused_records_nothing() {
     let counts = GridwalkTraceInfo { scratch: region(1 << 20), geometries: region(800), ..trace };
     let nearest = GridwalkTraceInfo { scratch: region(1 << 20), hits: region(4800), geometries: region(800), ..trace };
     let beyond = GridwalkTraceInfo { scratch: GridwalkRegion { address: u64::MAX - 63, ..region(1 << 20) }, ..trace };
+    let order = GridwalkTraceInfo { scratch: region(1 << 20), order: region(396), ..trace };
+    let sort = GridwalkRaySortInfo { order: region(396), ..ray_sort() };
     let before = COMMANDS.get();
     // SAFETY: as above.
     let results = unsafe {
         [
             gridwalk_cmd_build(tracer.0, cmd, &build),
+            gridwalk_cmd_closest_hit(tracer.0, cmd, 4096, &order),
+            gridwalk_cmd_sort_rays(tracer.0, cmd, 4096, &sort),
             gridwalk_cmd_closest_hit(tracer.0, cmd, 4096, &trace),
             gridwalk_cmd_any_hit(tracer.0, cmd, 4096, &trace),
             gridwalk_cmd_build(tracer.0, cmd, &records),
@@ -307,8 +325,8 @@ fn what_is_refused_records_nothing() {
             gridwalk_cmd_nearest_hits(tracer.0, cmd, 4096, &counts, 65),
         ]
     };
-    let (regions, options) = results.split_at(6);
-    assert_eq!(regions, [GridwalkResult::ErrorRegion; 6]);
+    let (regions, options) = results.split_at(8);
+    assert_eq!(regions, [GridwalkResult::ErrorRegion; 8]);
     assert_eq!(options, [GridwalkResult::ErrorOption; 2]);
     assert_eq!(COMMANDS.get(), before);
 }

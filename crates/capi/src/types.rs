@@ -311,6 +311,10 @@ pub struct GridwalkTraceInfo {
     /// 0xFFFFFFFF where there is no hit. Of closest hits one a ray, left as it is where `resume` leaves the hit; of any hit one a ray, of the
     /// hit that ended the search; of nearest hits as many a ray as hits. Address 0: nowhere. A count of hits has none.
     pub geometries: GridwalkRegion,
+    /// A `uint32_t` a ray: the indices of the rays in the order in which they are traced, as `gridwalk_cmd_sort_rays` makes it; what belongs
+    /// to a ray lies at its index as ever. `ray_count` is then the number of indices, which are below the number of rays and differ; the
+    /// other regions hold all rays. Address 0: the rays as they are.
+    pub order: GridwalkRegion,
     /// Mask of all rays: a geometry is hit only if its mask shares a bit with it. 0: 0xFFFFFFFF, which is also the mask of a mesh without
     /// a record.
     pub mask: u32,
@@ -319,6 +323,24 @@ pub struct GridwalkTraceInfo {
     /// Closest hit: `VK_TRUE` to go on from the hits that lie in `hits`, which stay unless a closer one is found. So several grids are
     /// traced one after another. Nearest hits: `VK_TRUE` for those beyond the last hit that lies there. So all hits are had in portions.
     pub resume: VkBool32,
+}
+
+/// A sort of rays.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct GridwalkRaySortInfo {
+    /// `sizeof(GridwalkRaySortInfo)`.
+    pub struct_size: u32,
+    /// The number of rays; with an indirect count its bound.
+    pub ray_count: u32,
+    /// `GridwalkRay`s; the address is a multiple of 16.
+    pub rays: GridwalkRegion,
+    /// Where the order goes, a `uint32_t` a ray: for `GridwalkTraceInfo::order`.
+    pub order: GridwalkRegion,
+    /// Memory of the sort: `gridwalk_ray_sort_scratch_size`. Not needed by the traces that follow, whose scratch it may be.
+    pub scratch: GridwalkRegion,
+    /// Address 0: as many rays as `ray_count`. Otherwise a `uint32_t` there says how many.
+    pub indirect_count: GridwalkRegion,
 }
 
 /// A ray in device memory.

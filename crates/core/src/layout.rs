@@ -142,6 +142,8 @@ pub struct DispatchArguments {
     pub overlap_count: [u32; 4],
     /// Of the reduce and the downsweep of the offsets' scan.
     pub offsets_scan: [u32; 4],
+    /// Of `ray_keys`: written only where rays are sorted; then only this and the first passes' of the sort are.
+    pub ray_keys: [u32; 4],
 }
 
 /// The box of some triangles.

@@ -30,7 +30,7 @@ pub static ANY_HIT: Kernel = Kernel {
     spirv: spirv!("../spirv/any_hit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 64,
+    push_constant_size: 72,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
@@ -39,6 +39,7 @@ pub static ANY_HIT: Kernel = Kernel {
         ("walks", Access::ReadWrite),
         ("masks", Access::Read),
         ("geometries", Access::Write),
+        ("order", Access::Read),
     ],
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
@@ -176,7 +177,7 @@ pub static CLOSEST_HIT: Kernel = Kernel {
     spirv: spirv!("../spirv/closest_hit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 72,
+    push_constant_size: 80,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
@@ -186,6 +187,7 @@ pub static CLOSEST_HIT: Kernel = Kernel {
         ("counters", Access::ReadWrite),
         ("masks", Access::Read),
         ("geometries", Access::Write),
+        ("order", Access::Read),
     ],
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
@@ -219,7 +221,7 @@ pub static COUNT_HITS: Kernel = Kernel {
     spirv: spirv!("../spirv/count_hits.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 64,
+    push_constant_size: 72,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
@@ -227,6 +229,7 @@ pub static COUNT_HITS: Kernel = Kernel {
         ("state", Access::ReadWrite),
         ("walks", Access::ReadWrite),
         ("masks", Access::Read),
+        ("order", Access::Read),
     ],
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
@@ -274,7 +277,7 @@ pub static NEAREST_HITS: Kernel = Kernel {
     spirv: spirv!("../spirv/nearest_hits.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 72,
+    push_constant_size: 80,
     accesses: &[
         ("grid", Access::Read),
         ("rays", Access::Read),
@@ -283,6 +286,7 @@ pub static NEAREST_HITS: Kernel = Kernel {
         ("walks", Access::ReadWrite),
         ("masks", Access::Read),
         ("geometries", Access::Write),
+        ("order", Access::Read),
     ],
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
@@ -359,6 +363,36 @@ pub static PAIR_ARGS: Kernel = Kernel {
     push_constant_size: 40,
     accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::Write), ("report", Access::ReadWrite)],
     spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "PAIRS_EACH", 16), (5, "SORT_TILES", 1)],
+};
+
+/// Kernel `ray_keys`, from `glsl/map/ray_keys.comp`.
+pub static RAY_KEYS: Kernel = Kernel {
+    name: "ray_keys",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/ray_keys.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 40,
+    accesses: &[
+        ("grid", Access::Read),
+        ("rays", Access::Read),
+        ("state", Access::Read),
+        ("keys", Access::Write),
+        ("values", Access::Write),
+    ],
+    spec_constants: &[],
+};
+
+/// Kernel `ray_sort_args`, from `glsl/map/ray_sort_args.comp`.
+pub static RAY_SORT_ARGS: Kernel = Kernel {
+    name: "ray_sort_args",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/ray_sort_args.spv"),
+    local_size: [1, 1, 1],
+    local_size_ids: [None, None, None],
+    push_constant_size: 32,
+    accesses: &[("state", Access::Write), ("arguments", Access::Write), ("count", Access::Read)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "SORT_TILE", 8192), (4, "SCAN_TILE", 4096), (5, "SORT_TILES", 1)],
 };
 
 /// Kernel `report_spine`, from `glsl/cooperative/report_spine.comp`.
@@ -488,6 +522,8 @@ pub static ALL: &[&Kernel] = &[
     &OVERLAP_EMIT,
     &OVERLAP_EMIT_LARGE,
     &PAIR_ARGS,
+    &RAY_KEYS,
+    &RAY_SORT_ARGS,
     &REPORT_SPINE,
     &SCAN_DOWNSWEEP,
     &SCAN_REDUCE,
@@ -520,11 +556,13 @@ const _: () = {
     assert!(size(|host: &Host| &host.masks) == 8);
     assert!(core::mem::offset_of!(Host, geometries) == 48);
     assert!(size(|host: &Host| &host.geometries) == 8);
-    assert!(core::mem::offset_of!(Host, mask) == 56);
+    assert!(core::mem::offset_of!(Host, order) == 56);
+    assert!(size(|host: &Host| &host.order) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 64);
     assert!(size(|host: &Host| &host.mask) == 4);
-    assert!(core::mem::offset_of!(Host, options) == 60);
+    assert!(core::mem::offset_of!(Host, options) == 68);
     assert!(size(|host: &Host| &host.options) == 4);
-    assert!(size_of::<Host>() == 64);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use gridwalk_core::layout::Bounds as Host;
@@ -717,11 +755,13 @@ const _: () = {
     assert!(size(|host: &Host| &host.masks) == 8);
     assert!(core::mem::offset_of!(Host, geometries) == 56);
     assert!(size(|host: &Host| &host.geometries) == 8);
-    assert!(core::mem::offset_of!(Host, mask) == 64);
+    assert!(core::mem::offset_of!(Host, order) == 64);
+    assert!(size(|host: &Host| &host.order) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 72);
     assert!(size(|host: &Host| &host.mask) == 4);
-    assert!(core::mem::offset_of!(Host, options) == 68);
+    assert!(core::mem::offset_of!(Host, options) == 76);
     assert!(size(|host: &Host| &host.options) == 4);
-    assert!(size_of::<Host>() == 72);
+    assert!(size_of::<Host>() == 80);
 };
 const _: () = {
     use crate::push::Configure as Host;
@@ -771,13 +811,15 @@ const _: () = {
     assert!(size(|host: &Host| &host.walks) == 8);
     assert!(core::mem::offset_of!(Host, masks) == 40);
     assert!(size(|host: &Host| &host.masks) == 8);
-    assert!(core::mem::offset_of!(Host, mask) == 48);
+    assert!(core::mem::offset_of!(Host, order) == 48);
+    assert!(size(|host: &Host| &host.order) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 56);
     assert!(size(|host: &Host| &host.mask) == 4);
-    assert!(core::mem::offset_of!(Host, options) == 52);
+    assert!(core::mem::offset_of!(Host, options) == 60);
     assert!(size(|host: &Host| &host.options) == 4);
-    assert!(core::mem::offset_of!(Host, launch) == 56);
+    assert!(core::mem::offset_of!(Host, launch) == 64);
     assert!(size(|host: &Host| &host.launch) == 4);
-    assert!(size_of::<Host>() == 64);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use gridwalk_core::layout::DispatchArguments as Host;
@@ -805,6 +847,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.overlap_count) == 16);
     assert!(core::mem::offset_of!(Host, offsets_scan) == 512);
     assert!(size(|host: &Host| &host.offsets_scan) == 16);
+    assert!(core::mem::offset_of!(Host, ray_keys) == 528);
+    assert!(size(|host: &Host| &host.ray_keys) == 16);
 };
 const _: () = {
     use crate::push::Gather as Host;
@@ -947,15 +991,17 @@ const _: () = {
     assert!(size(|host: &Host| &host.masks) == 8);
     assert!(core::mem::offset_of!(Host, geometries) == 48);
     assert!(size(|host: &Host| &host.geometries) == 8);
-    assert!(core::mem::offset_of!(Host, mask) == 56);
+    assert!(core::mem::offset_of!(Host, order) == 56);
+    assert!(size(|host: &Host| &host.order) == 8);
+    assert!(core::mem::offset_of!(Host, mask) == 64);
     assert!(size(|host: &Host| &host.mask) == 4);
-    assert!(core::mem::offset_of!(Host, options) == 60);
+    assert!(core::mem::offset_of!(Host, options) == 68);
     assert!(size(|host: &Host| &host.options) == 4);
-    assert!(core::mem::offset_of!(Host, launch) == 64);
+    assert!(core::mem::offset_of!(Host, launch) == 72);
     assert!(size(|host: &Host| &host.launch) == 4);
-    assert!(core::mem::offset_of!(Host, nearest) == 68);
+    assert!(core::mem::offset_of!(Host, nearest) == 76);
     assert!(size(|host: &Host| &host.nearest) == 4);
-    assert!(size_of::<Host>() == 72);
+    assert!(size_of::<Host>() == 80);
 };
 const _: () = {
     use crate::push::OverlapCount as Host;
@@ -1041,6 +1087,34 @@ const _: () = {
     assert!(size(|host: &Host| &host.direction) == 12);
     assert!(core::mem::offset_of!(Host, t_max) == 28);
     assert!(size(|host: &Host| &host.t_max) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use crate::push::RayKeys as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, rays) == 8);
+    assert!(size(|host: &Host| &host.rays) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 16);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, keys) == 24);
+    assert!(size(|host: &Host| &host.keys) == 8);
+    assert!(core::mem::offset_of!(Host, values) == 32);
+    assert!(size(|host: &Host| &host.values) == 8);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use crate::push::RaySortArgs as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, arguments) == 8);
+    assert!(size(|host: &Host| &host.arguments) == 8);
+    assert!(core::mem::offset_of!(Host, count) == 16);
+    assert!(size(|host: &Host| &host.count) == 8);
+    assert!(core::mem::offset_of!(Host, max_rays) == 24);
+    assert!(size(|host: &Host| &host.max_rays) == 4);
+    assert!(core::mem::offset_of!(Host, indirect) == 28);
+    assert!(size(|host: &Host| &host.indirect) == 4);
     assert!(size_of::<Host>() == 32);
 };
 const _: () = {

@@ -21,8 +21,8 @@
 //! | scratch | pairs while they are sorted, counters, dispatch arguments | while a build runs; builds that do not overlap in time may share it |
 //! | report | a [`Report`] | until the host has read it, if it wants to |
 //!
-//! These, and the scratch of a trace ([`Tracer::trace_scratch_size`]), begin at multiples of [`REGION_ALIGNMENT`] of their device address.
-//! Both scratches need `INDIRECT_BUFFER` beside `SHADER_DEVICE_ADDRESS`; all else needs that alone. What the caller writes and reads:
+//! These, and the scratch of a trace ([`Tracer::trace_scratch_size`]) or of a sort of rays ([`Tracer::ray_sort_scratch_size`]), begin at
+//! multiples of [`REGION_ALIGNMENT`] of their device address. All scratches need `INDIRECT_BUFFER` beside `SHADER_DEVICE_ADDRESS`; all else needs that alone. What the caller writes and reads:
 //!
 //! | region | an element | address a multiple of |
 //! |---|---|---|
@@ -30,7 +30,7 @@
 //! | [`GeometryRecord`]s | 128 bytes | 16 |
 //! | [`Ray`]s | 32 bytes | 16 |
 //! | [`Hit`]s; answers of any hit and of counts | 16 bytes; 4 | 16; 4 |
-//! | number of rays, masks | 4 bytes | 4 |
+//! | number of rays, masks, order | 4 bytes | 4 |
 //! | geometries | 8 bytes | 8 |
 //! | counters | 16 bytes | 16 |
 //!
@@ -49,6 +49,7 @@
 //! - from [`Tracer::BUILD`] to [`Tracer::TRACE`] between a build and the traces through its grid;
 //! - from [`Tracer::TRACE`] to whatever reads the hits, and from whatever wrote the rays or an indirect count to [`Tracer::TRACE`];
 //! - between two builds that share a scratch region, and between two traces that share one, from and to the same masks;
+//! - between a sort of rays and the traces in its order, which take the place of each other in all of these, from and to [`Tracer::TRACE`];
 //! - to [`Access::HOST_READ`] before the host reads a report.
 //!
 //! Barriers among the steps of one build or trace are the library's.
@@ -89,6 +90,8 @@
 //! box's padding is traced as the rounded ray. A walk that was given up after its continuations has triangle [`UNFINISHED`]: neither a hit
 //! nor a miss. [`Tracer::cmd_any_hit`] tells whether there is a hit, [`Tracer::cmd_count_hits`] how many, [`Tracer::cmd_nearest_hits`] gives the
 //! nearest in order; masks and culling restrict all of them ([`TraceInfo::mask`], [`TraceInfo::cull`]). No ray passes between two triangles that share an edge.
+//! The order in which rays are traced changes none of this: [`Tracer::cmd_sort_rays`] makes one in which rays that go the same way follow one
+//! another, for any trace ([`TraceInfo::order`]).
 //!
 //! # In your own shader
 //!
@@ -151,8 +154,8 @@ pub use sizes::{
 };
 pub use sync::{Access, cmd_barrier};
 pub use tracer::{
-    BuildInfo, BuildOptions, Cull, DeviceDesc, Geometry, Input, MAX_NEAREST, Overlap, RayCount, Records, Region, Timestamps, TraceInfo,
-    Tracer,
+    BuildInfo, BuildOptions, Cull, DeviceDesc, Geometry, Input, MAX_NEAREST, Overlap, RayCount, RaySortInfo, Records, Region, Timestamps,
+    TraceInfo, Tracer,
 };
 
 /// The public GLSL include in one piece: trace from your own shader.

@@ -3,6 +3,8 @@
 use bytemuck::Pod;
 use gridwalk_core::kernel::Kernel;
 use gridwalk_core::layout::{DispatchArguments, MAX_PASSES};
+use gridwalk_core::sort::{passes_of, writes_a};
+use gridwalk_core::twin::ray_keys::RAY_KEY_BITS;
 use std::mem::offset_of;
 
 use crate::kernels::*;
@@ -46,11 +48,12 @@ pub enum Buffer {
     Counters,
     Masks,
     Geometries,
+    Order,
 }
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 31] = [
+    pub const ALL: [Buffer; 32] = [
         Buffer::Positions,
         Buffer::Indices,
         Buffer::Records,
@@ -82,6 +85,7 @@ impl Buffer {
         Buffer::Counters,
         Buffer::Masks,
         Buffer::Geometries,
+        Buffer::Order,
     ];
 
     const fn token(self) -> u64 {
@@ -318,6 +322,23 @@ fn gather(plan: &mut Plan, capacity: &Capacity, source: Source, shape: &Shape) -
     }
 }
 
+/// A pass of the sort, whose dispatches have their arguments in `slot`; after the last pass the values lie in `values_b`.
+fn sort_pass(plan: &mut Plan, pass: u32, slot: u32, table_spine: Dispatch, values_b: Buffer) {
+    use Buffer::*;
+    let (state, keys_a, keys_b, table) = (State.token(), KeysA.token(), KeysB.token(), Table.token());
+    let slot = 16 * slot as usize;
+    let sort = argument(offset_of!(DispatchArguments, sort) + slot);
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(&SORT_HISTOGRAM, sort, push::SortHistogram { state, keys_a, keys_b, table, pass, padding: 0 }));
+    plan.barrier(Barrier::Shader);
+    let table_scan = argument(offset_of!(DispatchArguments, table_scan) + slot);
+    let which = if pass == 0 { SCAN_FIRST_TABLE } else { SCAN_TABLE };
+    scan(plan, which, Table, table_scan, table_spine);
+    plan.barrier(Barrier::Shader);
+    let (values_a, values_b) = (ValuesA.token(), values_b.token());
+    plan.step(Step::new(&SORT_SCATTER, sort, push::SortScatter { state, keys_a, keys_b, values_a, values_b, table, pass, padding: 0 }));
+}
+
 /// The rebuild, from positions and indices to cell ranges (thesis sections 3.1 and 3.4).
 pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> Plan {
     use Buffer::*;
@@ -395,41 +416,8 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(&OVERLAP_EMIT_LARGE, argument(offset_of!(DispatchArguments, emit_large)), emission).variant(exact));
     for pass in 0..passes {
-        let slot = 16 * pass as usize;
-        let sort = argument(offset_of!(DispatchArguments, sort) + slot);
-        plan.barrier(Barrier::Shader);
-        plan.step(Step::new(
-            &SORT_HISTOGRAM,
-            sort,
-            push::SortHistogram {
-                state: State.token(),
-                keys_a: KeysA.token(),
-                keys_b: KeysB.token(),
-                table: Table.token(),
-                pass,
-                padding: 0,
-            },
-        ));
-        plan.barrier(Barrier::Shader);
-        let table_scan = argument(offset_of!(DispatchArguments, table_scan) + slot);
-        let table_spine = argument(offset_of!(DispatchArguments, table_spine) + slot);
-        let which = if pass == 0 { SCAN_FIRST_TABLE } else { SCAN_TABLE };
-        scan(&mut plan, which, Table, table_scan, table_spine);
-        plan.barrier(Barrier::Shader);
-        plan.step(Step::new(
-            &SORT_SCATTER,
-            sort,
-            push::SortScatter {
-                state: State.token(),
-                keys_a: KeysA.token(),
-                keys_b: KeysB.token(),
-                values_a: ValuesA.token(),
-                values_b: References.token(),
-                table: Table.token(),
-                pass,
-                padding: 0,
-            },
-        ));
+        let spine = argument(offset_of!(DispatchArguments, table_spine) + 16 * pass as usize);
+        sort_pass(&mut plan, pass, pass, spine, References);
     }
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
@@ -476,6 +464,8 @@ pub(crate) const ANY_EXTRAS: u32 = 4;
 pub const OPTION_MASKS: u32 = 4;
 /// See [`OPTION_MASKS`].
 pub const OPTION_GEOMETRIES: u32 = 8;
+/// Of the push constant alone: rays are traced in the order that is given.
+const OPTION_ORDER: u32 = 16;
 
 /// What a trace looks at beside rays and triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -514,15 +504,26 @@ pub enum Query {
     },
 }
 
-/// A trace over a buffer of rays. `max_rays` is the number of rays, or its bound if the number is in memory.
-pub fn trace_plan(query: Query, extras: Extras, max_rays: u32, indirect: bool) -> Plan {
+/// The rays of a trace.
+#[derive(Clone, Copy, Debug)]
+pub struct RayInputs {
+    /// How many, or the bound of a number in memory.
+    pub max: u32,
+    /// Whether the number is in memory.
+    pub indirect: bool,
+    /// Whether they are traced in an order that is given.
+    pub ordered: bool,
+}
+
+/// A trace over a buffer of rays.
+pub fn trace_plan(query: Query, extras: Extras, rays: &RayInputs) -> Plan {
     use Buffer::*;
     let state = TraceState.token();
     let mut plan = Plan::new();
     plan.step(Step::new(
         &TRACE_ARGS,
         Dispatch::Direct([1, 1, 1]),
-        push::TraceArgs { state, count: RayCount.token(), max_rays, indirect: indirect.into() },
+        push::TraceArgs { state, count: RayCount.token(), max_rays: rays.max, indirect: rays.indirect.into() },
     ));
     for turn in 0..=CONTINUATIONS {
         if turn > 0 {
@@ -531,38 +532,57 @@ pub fn trace_plan(query: Query, extras: Extras, max_rays: u32, indirect: bool) -
         }
         plan.barrier(Barrier::ShaderAndIndirect);
         let launch = if turn > 0 { CONTINUE } else { 0 } | if turn == CONTINUATIONS { LAST } else { 0 };
-        plan.step(trace_step(query, extras, launch));
+        plan.step(trace_step(query, extras, rays.ordered, launch));
     }
     plan
 }
 
-fn trace_step(query: Query, extras: Extras, launch: u32) -> Step {
+/// The order of rays by their keys: by the kernels of the build's sort, on a state of their own. Of `rays` the order counts for nothing.
+pub fn ray_sort_plan(rays: &RayInputs, shape: &Shape) -> Plan {
+    use Buffer::*;
+    let (passes, _) = passes_of(RAY_KEY_BITS, shape.sort_bits);
+    let (state, arguments, count) = (State.token(), Arguments.token(), RayCount.token());
+    let mut plan = Plan::new();
+    let args = push::RaySortArgs { state, arguments, count, max_rays: rays.max, indirect: rays.indirect.into() };
+    plan.step(Step::new(&RAY_SORT_ARGS, Dispatch::Direct([1, 1, 1]), args));
+    plan.barrier(Barrier::ShaderAndIndirect);
+    let (keys, values) = if writes_a(passes, 0) { (KeysA, ValuesA) } else { (KeysB, Order) };
+    let push = push::RayKeys { grid: Header.token(), rays: Rays.token(), state, keys: keys.token(), values: values.token() };
+    plan.step(Step::new(&RAY_KEYS, argument(offset_of!(DispatchArguments, ray_keys)), push));
+    for pass in 0..passes {
+        sort_pass(&mut plan, pass, 0, Dispatch::Direct([1, 1, 1]), Order);
+    }
+    plan
+}
+
+fn trace_step(query: Query, extras: Extras, ordered: bool, launch: u32) -> Step {
     use Buffer::*;
     let dispatch = Dispatch::Indirect(TraceState, offset_of!(gridwalk_core::layout::TraceState, arguments) as u64);
     let (grid, rays, state, walks) = (Header.token(), Rays.token(), TraceState.token(), Walks.token());
-    let (masks, geometries) = (Masks.token(), Geometries.token());
+    let (masks, geometries, order) = (Masks.token(), Geometries.token(), Order.token());
     let Extras { mask, options } = extras;
+    let options = options | if ordered { OPTION_ORDER } else { 0 };
     let extra = if extras == Extras::NONE { 0 } else { EXTRAS };
     match query {
         Query::Closest { resume, count } => {
             let variant = launch | extra | if resume { RESUME } else { 0 } | if count { COUNT } else { 0 };
             let (hits, counters) = (Hits.token(), Counters.token());
-            let push = push::ClosestHit { grid, rays, hits, state, walks, counters, masks, geometries, mask, options };
+            let push = push::ClosestHit { grid, rays, hits, state, walks, counters, masks, geometries, order, mask, options };
             Step::new(&CLOSEST_HIT, dispatch, push).variant(variant)
         }
         Query::Any => {
-            let push = push::AnyHit { grid, rays, occluded: Hits.token(), state, walks, masks, geometries, mask, options };
+            let push = push::AnyHit { grid, rays, occluded: Hits.token(), state, walks, masks, geometries, order, mask, options };
             let extra = if extra == 0 { 0 } else { ANY_EXTRAS };
             Step::new(&ANY_HIT, dispatch, push).variant(launch | extra)
         }
         Query::Count => {
-            let push = push::CountHits { grid, rays, counts: Hits.token(), state, walks, masks, mask, options, launch, padding: 0 };
+            let push = push::CountHits { grid, rays, counts: Hits.token(), state, walks, masks, order, mask, options, launch, padding: 0 };
             Step::new(&COUNT_HITS, dispatch, push)
         }
         Query::Nearest { nearest, resume } => {
             let launch = launch | if resume { RESUME } else { 0 };
             let hits = Hits.token();
-            let push = push::NearestHits { grid, rays, hits, state, walks, masks, geometries, mask, options, launch, nearest };
+            let push = push::NearestHits { grid, rays, hits, state, walks, masks, geometries, order, mask, options, launch, nearest };
             Step::new(&NEAREST_HITS, dispatch, push)
         }
     }

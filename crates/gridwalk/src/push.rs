@@ -110,6 +110,7 @@ pub(crate) struct AnyHit {
     pub(crate) walks: u64,
     pub(crate) masks: u64,
     pub(crate) geometries: u64,
+    pub(crate) order: u64,
     pub(crate) mask: u32,
     pub(crate) options: u32,
 }
@@ -172,6 +173,7 @@ pub(crate) struct ClosestHit {
     pub(crate) counters: u64,
     pub(crate) masks: u64,
     pub(crate) geometries: u64,
+    pub(crate) order: u64,
     pub(crate) mask: u32,
     pub(crate) options: u32,
 }
@@ -236,6 +238,28 @@ pub(crate) struct PairArgs {
     pub(crate) report: u64,
     pub(crate) pair_capacity: u32,
     pub(crate) pass_capacity: u32,
+}
+
+/// Of kernel `ray_keys`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct RayKeys {
+    pub(crate) grid: u64,
+    pub(crate) rays: u64,
+    pub(crate) state: u64,
+    pub(crate) keys: u64,
+    pub(crate) values: u64,
+}
+
+/// Of kernel `ray_sort_args`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct RaySortArgs {
+    pub(crate) state: u64,
+    pub(crate) arguments: u64,
+    pub(crate) count: u64,
+    pub(crate) max_rays: u32,
+    pub(crate) indirect: u32,
 }
 
 /// Of kernel `trace_args`.
@@ -328,6 +352,7 @@ pub(crate) struct CountHits {
     pub(crate) state: u64,
     pub(crate) walks: u64,
     pub(crate) masks: u64,
+    pub(crate) order: u64,
     pub(crate) mask: u32,
     pub(crate) options: u32,
     pub(crate) launch: u32,
@@ -345,6 +370,7 @@ pub(crate) struct NearestHits {
     pub(crate) walks: u64,
     pub(crate) masks: u64,
     pub(crate) geometries: u64,
+    pub(crate) order: u64,
     pub(crate) mask: u32,
     pub(crate) options: u32,
     pub(crate) launch: u32,

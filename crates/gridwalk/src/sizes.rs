@@ -205,6 +205,36 @@ impl TraceLayout {
     }
 }
 
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RaySortLayout {
+    pub(crate) state: Part,
+    pub(crate) arguments: Part,
+    pub(crate) keys_a: Part,
+    pub(crate) keys_b: Part,
+    pub(crate) values_a: Part,
+    pub(crate) table: Part,
+    pub(crate) scan_partials: Part,
+    pub(crate) size: u64,
+}
+
+impl RaySortLayout {
+    pub(crate) fn new(max_rays: u32, shape: &Shape) -> RaySortLayout {
+        let rays = u64::from(max_rays.max(1));
+        let table = shape.table_entries(max_rays).max(1);
+        let mut packer = Packer(0);
+        RaySortLayout {
+            state: packer.part(size_of::<BuildState>() as u64),
+            arguments: packer.part(size_of::<DispatchArguments>() as u64),
+            keys_a: packer.part(4 * rays),
+            keys_b: packer.part(4 * rays),
+            values_a: packer.part(4 * rays),
+            table: packer.part(4 * table),
+            scan_partials: packer.part(4 * table.div_ceil(u64::from(shape.scan_tile()))),
+            size: packer.0,
+        }
+    }
+}
+
 /// Passes that a plan records: digits of the largest key that the capacity of cells admits.
 pub(crate) fn pass_capacity(capacity: &Capacity, shape: &Shape) -> u32 {
     let key_bits = 32 - (capacity.cells.max(1) - 1).leading_zeros();

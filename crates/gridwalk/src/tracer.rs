@@ -10,11 +10,12 @@ use gridwalk_core::walk;
 
 use crate::error::{Error, Result};
 use crate::kernels::*;
-use crate::plan::{self, Buffer, BuildInputs, Dispatch, Extras, Item, MAX_PUSH, Query, Source, Step};
+use crate::plan::{self, Buffer, BuildInputs, Dispatch, Extras, Item, MAX_PUSH, Query, RayInputs, Source, Step};
 use crate::requirements;
 use crate::shape::Shape;
 use crate::sizes::{
-    self, BuildSizes, Capacity, GridLayout, MAX_RAYS, MAX_VERTICES, REGION_ALIGNMENT, REPORT_SIZE, RegionSize, ScratchLayout, TraceLayout,
+    self, BuildSizes, Capacity, GridLayout, MAX_RAYS, MAX_VERTICES, REGION_ALIGNMENT, REPORT_SIZE, RaySortLayout, RegionSize,
+    ScratchLayout, TraceLayout,
 };
 use crate::sync::{Access, SHADER, cmd_barrier};
 
@@ -224,6 +225,11 @@ pub struct TraceInfo {
     /// 0xFFFFFFFF where there is no hit. Of closest hits one a ray, left as it is where [`TraceInfo::resume`] leaves the hit; of any hit one a
     /// ray, of the hit that ended the search; of nearest hits as many a ray as hits. Counts have none.
     pub geometries: Option<Region>,
+    /// A `u32` a ray: the indices of the rays in the order in which they are traced. What a ray hits, its mask, its geometry and its
+    /// counters lie at its index as ever, bit for bit the same. [`Tracer::cmd_sort_rays`] makes an order in which rays that walk through the
+    /// same cells follow one another. [`TraceInfo::count`] is then the number of indices: a part of an order traces a part of the rays, of
+    /// which the other regions hold all. The indices are below the number of rays, and differ.
+    pub order: Option<Region>,
 }
 
 /// Sides of triangles that are not hit. The front is where the vertices go round counterclockwise, seen along the ray; records may exchange
@@ -255,7 +261,28 @@ impl TraceInfo {
             masks: None,
             cull: Cull::None,
             geometries: None,
+            order: None,
         }
+    }
+}
+
+/// Arguments of [`Tracer::cmd_sort_rays`].
+#[derive(Clone, Copy, Debug)]
+pub struct RaySortInfo {
+    /// [`gridwalk_core::Ray`]s.
+    pub rays: Region,
+    /// Number of rays.
+    pub count: RayCount,
+    /// Where the order goes, a `u32` a ray: for [`TraceInfo::order`].
+    pub order: Region,
+    /// Memory of the sort: [`Tracer::ray_sort_scratch_size`]. Not needed by the traces that follow, whose scratch it may be.
+    pub scratch: Region,
+}
+
+impl RaySortInfo {
+    /// A sort of rays.
+    pub const fn new(rays: Region, count: RayCount, order: Region, scratch: Region) -> RaySortInfo {
+        RaySortInfo { rays, count, order, scratch }
     }
 }
 
@@ -431,10 +458,18 @@ impl Tracer {
     /// # Errors
     /// [`Error::Capacity`], [`Error::DeviceLimit`].
     pub fn trace_scratch_size(&self, max_rays: u32) -> Result<RegionSize> {
-        if max_rays > MAX_RAYS {
-            return Err(Error::Capacity { what: "rays", given: max_rays.into(), limit: MAX_RAYS.into() });
-        }
+        check_rays(max_rays)?;
         sizes::region_size("trace scratch", TraceLayout::new(max_rays).size, self.max_buffer_size, vk::BufferUsageFlags::INDIRECT_BUFFER)
+    }
+
+    /// What the scratch region of a sort of rays needs.
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], [`Error::DeviceLimit`].
+    pub fn ray_sort_scratch_size(&self, max_rays: u32) -> Result<RegionSize> {
+        check_rays(max_rays)?;
+        let size = RaySortLayout::new(max_rays, &self.shape).size;
+        sizes::region_size("ray sort scratch", size, self.max_buffer_size, vk::BufferUsageFlags::INDIRECT_BUFFER)
     }
 
     /// The steps of a build, in order of its timestamps: step i runs between timestamps i and i + 1. A build of records runs `geometry_scan`
@@ -528,7 +563,8 @@ impl Tracer {
             | Buffer::Walks
             | Buffer::Counters
             | Buffer::Masks
-            | Buffer::Geometries => Region::NONE,
+            | Buffer::Geometries
+            | Buffer::Order => Region::NONE,
         }
     }
 
@@ -643,7 +679,7 @@ impl Tracer {
     /// As for [`Tracer::cmd_closest_hit`].
     unsafe fn trace(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &TraceInfo, query: Query, hit_size: u64) -> Result<()> {
         let region = self.trace_regions(grid, info, hit_size)?;
-        let plan = plan::trace_plan(query, extras(info), info.count.max(), matches!(info.count, RayCount::Indirect { .. }));
+        let plan = plan::trace_plan(query, extras(info), &ray_inputs(&info.count, info.order.is_some()));
         // SAFETY: the caller's contract; the plan stays inside of the regions that were checked.
         unsafe { self.record(cmd, plan.items(), region, None) };
         Ok(())
@@ -651,22 +687,14 @@ impl Tracer {
 
     fn trace_regions(&self, grid: vk::DeviceAddress, info: &TraceInfo, hit_size: u64) -> Result<impl Fn(Buffer) -> Region + use<>> {
         let max = info.count.max();
-        if max > MAX_RAYS {
-            return Err(Error::Capacity { what: "rays", given: max.into(), limit: MAX_RAYS.into() });
-        }
+        check_rays(max)?;
         let layout = TraceLayout::new(max);
         check_address("grid", grid, REGION_ALIGNMENT)?;
         check_region("rays", &info.rays, u64::from(max) * 32, 16)?;
         check_region("hits", &info.hits, u64::from(max) * hit_size, hit_size.min(16))?;
         check_region("trace scratch", &info.scratch, layout.size, REGION_ALIGNMENT)?;
         check_indirect("trace scratch", &info.scratch)?;
-        let count = match info.count {
-            RayCount::Direct(_) => Region::NONE,
-            RayCount::Indirect { count, .. } => {
-                check_region("ray count", &count, 4, 4)?;
-                count
-            }
-        };
+        let count = check_count(&info.count)?;
         let counters = info.counters.unwrap_or(Region::NONE);
         if info.counters.is_some() {
             check_region("counters", &counters, u64::from(max) * 16, 16)?;
@@ -680,6 +708,10 @@ impl Tracer {
             // Of each hit of a ray.
             check_region("geometries", &geometries, u64::from(max) * 8 * (hit_size / 16).max(1), 8)?;
         }
+        let order = info.order.unwrap_or(Region::NONE);
+        if info.order.is_some() {
+            check_region("order", &order, u64::from(max) * 4, 4)?;
+        }
         let (rays, hits, scratch) = (info.rays, info.hits, info.scratch);
         let header = Region { address: grid, ..Region::NONE };
         Ok(move |buffer| match buffer {
@@ -690,8 +722,58 @@ impl Tracer {
             Buffer::Counters => counters,
             Buffer::Masks => masks,
             Buffer::Geometries => geometries,
+            Buffer::Order => order,
             Buffer::TraceState => scratch.part(layout.state.offset, layout.state.size),
             Buffer::Walks => scratch.part(layout.walks.offset, layout.walks.size),
+            _ => Region::NONE,
+        })
+    }
+
+    /// Records a sort of rays: the order in which rays whose walks begin in the same part of the grid and in the same direction follow one
+    /// another, for [`TraceInfo::order`]. It is the same for the same rays and grid. It pays for many rays, of which neighbours walk through
+    /// different cells; the further they are apart in the order that is given, and the larger the scene, the more.
+    ///
+    /// Put a barrier before it, as for [`Tracer::cmd_closest_hit`], and one after it, from [`Tracer::TRACE`] to [`Tracer::TRACE`]. The bound
+    /// compute pipeline and push constants are lost.
+    ///
+    /// # Errors
+    /// [`Error::Capacity`], [`Error::Region`]; then nothing was recorded.
+    ///
+    /// # Safety
+    /// As for [`Tracer::cmd_closest_hit`].
+    pub unsafe fn cmd_sort_rays(&self, cmd: vk::CommandBuffer, grid: vk::DeviceAddress, info: &RaySortInfo) -> Result<()> {
+        let region = self.ray_sort_regions(grid, info)?;
+        let plan = plan::ray_sort_plan(&ray_inputs(&info.count, false), &self.shape);
+        // SAFETY: the caller's contract; the plan stays inside of the regions that were checked.
+        unsafe { self.record(cmd, plan.items(), region, None) };
+        Ok(())
+    }
+
+    fn ray_sort_regions(&self, grid: vk::DeviceAddress, info: &RaySortInfo) -> Result<impl Fn(Buffer) -> Region + use<>> {
+        let max = info.count.max();
+        check_rays(max)?;
+        let layout = RaySortLayout::new(max, &self.shape);
+        check_address("grid", grid, REGION_ALIGNMENT)?;
+        check_region("rays", &info.rays, u64::from(max) * 32, 16)?;
+        check_region("order", &info.order, u64::from(max) * 4, 4)?;
+        check_region("ray sort scratch", &info.scratch, layout.size, REGION_ALIGNMENT)?;
+        check_indirect("ray sort scratch", &info.scratch)?;
+        let count = check_count(&info.count)?;
+        let (rays, order, scratch) = (info.rays, info.order, info.scratch);
+        let header = Region { address: grid, ..Region::NONE };
+        let in_scratch = move |part: sizes::Part| scratch.part(part.offset, part.size);
+        Ok(move |buffer| match buffer {
+            Buffer::Header => header,
+            Buffer::Rays => rays,
+            Buffer::RayCount => count,
+            Buffer::Order => order,
+            Buffer::State => in_scratch(layout.state),
+            Buffer::Arguments => in_scratch(layout.arguments),
+            Buffer::KeysA => in_scratch(layout.keys_a),
+            Buffer::KeysB => in_scratch(layout.keys_b),
+            Buffer::ValuesA => in_scratch(layout.values_a),
+            Buffer::Table => in_scratch(layout.table),
+            Buffer::ScanPartials => in_scratch(layout.scan_partials),
             _ => Region::NONE,
         })
     }
@@ -856,6 +938,28 @@ fn check_input(input: &Input, capacity: &Capacity) -> Result<Source> {
 /// counts with gathering the triangles.
 fn is_stamped(item: &Item) -> bool {
     matches!(item, Item::Step(step) if !std::ptr::eq(step.kernel, &GEOMETRY_SCAN))
+}
+
+fn ray_inputs(count: &RayCount, ordered: bool) -> RayInputs {
+    RayInputs { max: count.max(), indirect: matches!(count, RayCount::Indirect { .. }), ordered }
+}
+
+fn check_rays(max: u32) -> Result<()> {
+    match max > MAX_RAYS {
+        true => Err(Error::Capacity { what: "rays", given: max.into(), limit: MAX_RAYS.into() }),
+        false => Ok(()),
+    }
+}
+
+/// Where the number of rays lies, if it is in memory.
+fn check_count(count: &RayCount) -> Result<Region> {
+    match *count {
+        RayCount::Direct(_) => Ok(Region::NONE),
+        RayCount::Indirect { count, .. } => {
+            check_region("ray count", &count, 4, 4)?;
+            Ok(count)
+        }
+    }
 }
 
 fn check_region(name: &'static str, region: &Region, size: u64, alignment: u64) -> Result<()> {

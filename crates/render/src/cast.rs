@@ -5,7 +5,7 @@ use crate::{
     pipeline::{Recorder, Timer},
 };
 use bytemuck::AnyBitPattern;
-use gridwalk::{Hit, Ray, RayCount, TraceInfo};
+use gridwalk::{Hit, Ray, RayCount, RaySortInfo, Region, TraceInfo};
 use std::time::Instant;
 
 /// Rays of one submission at most, so that it is short enough for a watchdog.
@@ -28,7 +28,10 @@ pub struct RayBatch {
     rays: Buffer,
     answers: Buffer,
     scratch: Option<Buffer>,
+    /// Of rays that are sorted: the order of all, and the memory of the sort.
+    sorting: Option<(Buffer, Option<Buffer>)>,
     count: u32,
+    sort_ms: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -53,7 +56,32 @@ impl RayBatch {
             kind: BufferKind::Device,
             dedicated: false,
         })?;
-        Ok(RayBatch { context: context.clone(), rays: context.upload("rays", rays)?, answers, scratch: None, count })
+        Ok(RayBatch {
+            context: context.clone(),
+            rays: context.upload("rays", rays)?,
+            answers,
+            scratch: None,
+            sorting: None,
+            count,
+            sort_ms: 0.0,
+        })
+    }
+
+    /// As [`RayBatch::new`], and each query sorts the rays before it traces them ([`gridwalk::Tracer::cmd_sort_rays`]): the same answers in
+    /// the same places, sooner where neighbours among many rays go different ways.
+    ///
+    /// # Errors
+    /// As [`RayBatch::new`].
+    pub fn sorted(context: &Context, rays: &[Ray]) -> Result<RayBatch> {
+        let batch = RayBatch::new(context, rays)?;
+        let size = u64::from(batch.count) * 4;
+        let order = context.buffer(&BufferDesc { name: "ray order", size, kind: BufferKind::Device, dedicated: false })?;
+        Ok(RayBatch { sorting: Some((order, None)), ..batch })
+    }
+
+    /// Milliseconds of the last query that sorting its rays took.
+    pub fn sort_ms(&self) -> f64 {
+        self.sort_ms
     }
 
     /// Number of rays.
@@ -111,6 +139,22 @@ impl RayBatch {
         };
         let mut timer = Timer::new(&self.context)?;
         let begin = Instant::now();
+        if let Some((order, scratch)) = &mut self.sorting {
+            if scratch.is_none() {
+                let size = tracer.ray_sort_scratch_size(self.count)?.size;
+                let desc = BufferDesc { name: "ray sort scratch", size, kind: BufferKind::Device, dedicated: false };
+                *scratch = Some(self.context.buffer(&desc)?);
+            }
+            let scratch = scratch.as_ref().map_or(Region::NONE, Buffer::region);
+            let info = RaySortInfo::new(self.rays.region(), RayCount::Direct(self.count), order.region(), scratch);
+            self.context.submit("sort rays", |cmd| {
+                let mut recorder = Recorder::new(&self.context, cmd, &mut timer);
+                // SAFETY: as below; the order has room for as many indices.
+                recorder.step("sort", "cooperative", |cmd| unsafe { tracer.cmd_sort_rays(cmd, grid.address(), &info) })?;
+                Ok(())
+            })?;
+            timer.collect()?;
+        }
         let mut first = 0;
         let answer_size = match query {
             Query::Closest => size_of::<Hit>() as u64,
@@ -118,9 +162,15 @@ impl RayBatch {
         };
         while first < self.count {
             let count = (self.count - first).min(most);
-            let rays = self.rays.region().part(u64::from(first) * size_of::<Ray>() as u64, u64::from(count) * size_of::<Ray>() as u64);
-            let hits = self.answers.region().part(u64::from(first) * answer_size, u64::from(count) * answer_size);
-            let info = TraceInfo::new(rays, hits, RayCount::Direct(count), scratch.region());
+            let part = |region: Region, size: u64| region.part(u64::from(first) * size, u64::from(count) * size);
+            let (rays, hits, number) = (self.rays.region(), self.answers.region(), RayCount::Direct(count));
+            // A part of the order is of rays from everywhere.
+            let info = match &self.sorting {
+                Some((order, _)) => {
+                    TraceInfo { order: Some(part(order.region(), 4)), ..TraceInfo::new(rays, hits, number, scratch.region()) }
+                }
+                None => TraceInfo::new(part(rays, size_of::<Ray>() as u64), part(hits, answer_size), number, scratch.region()),
+            };
             self.context.submit("trace", |cmd| {
                 let mut recorder = Recorder::new(&self.context, cmd, &mut timer);
                 // SAFETY: the command buffer is recording on the tracer's device; the regions are parts of living buffers of that device
@@ -138,7 +188,9 @@ impl RayBatch {
         }
         let wall = begin.elapsed().as_secs_f64() * 1e3;
         self.scratch = Some(scratch);
-        Ok(if self.context.has_timestamps() { timer.take().iter().map(|step| step.ms).sum() } else { wall })
+        let steps = timer.take();
+        self.sort_ms = steps.iter().filter(|step| step.name == "sort").map(|step| step.ms).sum();
+        Ok(if self.context.has_timestamps() { steps.iter().map(|step| step.ms).sum() } else { wall })
     }
 }
 

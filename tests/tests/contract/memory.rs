@@ -1,7 +1,7 @@
 //! Which memory is needed, for how long, and what may share it.
 
 use gridwalk::ash::vk;
-use gridwalk::{BuildInfo, RayCount, Region, Timestamps, TraceInfo, Tracer, cmd_barrier};
+use gridwalk::{BuildInfo, RayCount, RaySortInfo, Region, Timestamps, TraceInfo, Tracer, cmd_barrier};
 use gridwalk_tests::foreign::{Foreign, Memory, Placed, Terrain};
 
 /// One buffer for each region, with the usage flags that the sizes name and no other, and those of the caller's data with the one flag that
@@ -219,8 +219,18 @@ fn what_is_too_small_or_badly_aligned_is_refused() {
             ("trace scratch", TraceInfo { scratch: shorter(trace.scratch), ..trace }),
             ("masks", TraceInfo { masks: Some(trace.rays.part(0, 4)), ..trace }),
             ("geometries", TraceInfo { geometries: Some(moved(trace.hits, 4)), ..trace }),
+            ("order", TraceInfo { order: Some(trace.rays.part(0, 4)), ..trace }),
             ("counters", TraceInfo { counters: Some(moved(trace.hits, 8)), ..trace }),
             ("ray count", TraceInfo { count: RayCount::Indirect { count: moved(trace.rays.part(0, 4), 2), max: 3 }, ..trace }),
+        ];
+        // Nothing is recorded, so that they may overlap.
+        let sort = RaySortInfo::new(trace.rays, trace.count, trace.rays, build.scratch);
+        let sorts = [
+            ("rays", RaySortInfo { rays: shorter(trace.rays), ..sort }),
+            ("order", RaySortInfo { order: trace.rays.part(0, 4), ..sort }),
+            ("ray sort scratch", RaySortInfo { scratch: build.scratch.part(0, 64), ..sort }),
+            ("ray sort scratch", RaySortInfo { scratch: Region { buffer: vk::Buffer::null(), ..build.scratch }, ..sort }),
+            ("ray count", RaySortInfo { count: RayCount::Indirect { count: Region::NONE, max: 3 }, ..sort }),
         ];
         let commands = foreign.record(|cmd| {
             let refused = |name: &str, result: gridwalk::Result<()>| match result {
@@ -232,6 +242,7 @@ fn what_is_too_small_or_badly_aligned_is_refused() {
                 builds.iter().for_each(|(name, build)| refused(name, tracer.cmd_build(cmd, build)));
                 traces.iter().for_each(|(name, trace)| refused(name, tracer.cmd_closest_hit(cmd, build.grid.address, trace)));
                 refused("grid", tracer.cmd_closest_hit(cmd, build.grid.address + 32, &trace));
+                sorts.iter().for_each(|(name, sort)| refused(name, tracer.cmd_sort_rays(cmd, build.grid.address, sort)));
                 refused("grid", tracer.cmd_closest_hit(cmd, 0, &trace));
             }
         });

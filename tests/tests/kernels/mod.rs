@@ -9,6 +9,7 @@ mod gather;
 mod largest;
 mod overlap;
 mod pair_args;
+mod ray_sort;
 mod scan;
 mod sort;
 mod steps;

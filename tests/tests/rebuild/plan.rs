@@ -1,8 +1,11 @@
 //! Plans as data: every barrier is needed, and none is missing.
 
 use gridwalk::hazard::{HazardKind, find_hazard, find_hazard_in};
-use gridwalk::plan::{Barrier, BuildInputs, CONTINUATIONS, Dispatch, Extras, Item, Plan, Query, Source, build_plan, trace_plan};
+use gridwalk::plan::{
+    Barrier, BuildInputs, CONTINUATIONS, Dispatch, Extras, Item, Plan, Query, RayInputs, Source, build_plan, ray_sort_plan, trace_plan,
+};
 use gridwalk::{Capacity, Shape};
+use gridwalk_core::twin::ray_keys::RAY_KEY_BITS;
 
 use crate::kernels::{ODD, TINY};
 
@@ -34,9 +37,20 @@ fn traces() -> Vec<(String, Plan)> {
     ]);
     queries
         .flat_map(|query| {
-            [false, true].map(|indirect| (format!("{query:?}, indirect {indirect}"), trace_plan(query, Extras::NONE, 1_000, indirect)))
+            [(false, false), (true, true)].map(|(indirect, ordered)| {
+                let rays = RayInputs { max: 1_000, indirect, ordered };
+                (format!("{query:?}, {rays:?}"), trace_plan(query, Extras::NONE, &rays))
+            })
         })
         .collect()
+}
+
+fn sorts() -> Vec<(String, Plan)> {
+    let plan = |(shape, indirect)| {
+        let rays = RayInputs { max: 1_000, indirect, ordered: false };
+        (format!("sort, {rays:?}, {shape:?}"), ray_sort_plan(&rays, &shape))
+    };
+    SHAPES.into_iter().flat_map(|shape| [(shape, false), (shape, true)]).map(plan).collect()
 }
 
 fn barriers(plan: &Plan) -> impl Iterator<Item = (usize, Barrier)> + '_ {
@@ -61,11 +75,16 @@ fn plans_have_no_hazard() {
             assert_eq!(find_hazard([build, trace, build]), None, "{name}");
         }
     }
+    for (name, sort) in &sorts() {
+        for (_, trace) in &traces {
+            assert_eq!(find_hazard([sort, trace, sort]), None, "{name}");
+        }
+    }
 }
 
 #[test]
 fn every_barrier_is_needed() {
-    for (name, plan) in builds().into_iter().chain(traces()) {
+    for (name, plan) in builds().into_iter().chain(traces()).chain(sorts()) {
         assert!(barriers(&plan).count() > 3, "{name}");
         for (at, barrier) in barriers(&plan) {
             assert!(find_hazard_in(&without(&plan, at)).is_some(), "{name}: the barrier at {at} is idle");
@@ -101,6 +120,17 @@ fn the_callers_barriers_are_needed() {
             assert_eq!(hazard(Some(Barrier::ShaderAndIndirect)), None, "{name}: {what}");
             assert_eq!(hazard(None).is_some(), needed, "{name}: {what}, without a barrier");
         }
+    }
+    // An order is read where it was written.
+    let (_, ordered) = &traces[1];
+    for (name, sort) in &sorts() {
+        let walk =
+            ordered.items().iter().copied().find(|item| matches!(item, Item::Step(step) if step.kernel.name == "closest_hit")).unwrap();
+        let behind = |between: Option<Barrier>| {
+            find_hazard_in(&sort.items().iter().copied().chain(between.map(Item::Barrier)).chain([walk]).collect::<Vec<_>>())
+        };
+        assert_eq!(behind(Some(Barrier::Shader)), None, "{name}");
+        assert_eq!(behind(None).map(|hazard| hazard.kind), Some(HazardKind::ReadAfterWrite), "{name}");
     }
     let (_, build) = &builds[2];
     // A walk right behind a build, as a shader of the caller's is.
@@ -144,6 +174,10 @@ fn plans_have_the_passes_of_their_capacity() {
                 }
             }
         }
+    }
+    for ((name, sort), shape) in sorts().iter().step_by(2).zip(SHAPES) {
+        let scatters = sort.steps().filter(|step| step.kernel.name == "sort_scatter").count() as u32;
+        assert_eq!(scatters, RAY_KEY_BITS.div_ceil(shape.sort_bits), "{name}");
     }
     let (_, trace) = &traces()[0];
     assert_eq!(trace.steps().count() as u32, 2 + 2 * CONTINUATIONS);

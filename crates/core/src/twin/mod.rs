@@ -29,6 +29,8 @@ pub mod overlap_emit;
 pub mod pair_args;
 pub mod place;
 pub mod player;
+pub mod ray_keys;
+pub mod ray_sort_args;
 pub mod report_spine;
 pub mod scan_downsweep;
 pub mod scan_reduce;

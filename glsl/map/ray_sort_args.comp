@@ -1,0 +1,44 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// One invocation turns a number of rays, given or in a buffer, into what the kernels of the sort take from a build's state, and into the
+// arguments of their dispatches, of which the first pass's are those of all.
+
+#include "shared/build.glsl"
+#include "shared/ray_key.glsl"
+#include "shared/trace_types.glsl"
+
+layout(local_size_x = 1) in;
+layout(constant_id = 1) const uint MAP_SIZE = 64;
+layout(constant_id = 2) const uint SORT_BITS = 10;
+layout(constant_id = 3) const uint SORT_TILE = 8192;
+layout(constant_id = 4) const uint SCAN_TILE = 4096;
+layout(constant_id = 5) const uint SORT_TILES = 1; // tiles a workgroup of the sort
+
+layout(push_constant, std430) uniform RaySortArgs {
+    StateOut state;
+    ArgumentsOut arguments;
+    RayCountIn count;
+    uint max_rays;
+    uint indirect; // 0: max_rays is the number itself
+};
+
+void main() {
+    uint rays = traced_rays(count, max_rays, indirect);
+    uint passes = (RAY_KEY_BITS + SORT_BITS - 1u) / SORT_BITS;
+    uint digit_bits = (RAY_KEY_BITS + passes - 1u) / passes;
+    uint tiles = (rays + SORT_TILE - 1u) / SORT_TILE;
+    uint table_count = tiles << digit_bits;
+    state.state.pair_count = rays;
+    state.state.kept_count = rays;
+    state.state.key_bits = RAY_KEY_BITS;
+    state.state.pass_count = passes;
+    state.state.digit_bits = digit_bits;
+    state.state.table_count = table_count;
+    state.state.sentinel = SATURATED; // no ray's key: none is left behind
+    arguments.arguments.ray_keys = uvec4(split_workgroups(rays, MAP_SIZE), 0u);
+    arguments.arguments.sort[0] = uvec4(split_workgroups(tiles, SORT_TILES), 0u);
+    arguments.arguments.table_scan[0] = uvec4(split_workgroups(table_count, SCAN_TILE), 0u);
+}
