@@ -51,9 +51,10 @@ void main() {
         } else if (!EXACT || is_row(box)) {
             mask = 0xFFFFFFFFu >> (SMALL_BOX - count);
         } else {
+            SeparatingAxes axes = separating_axes(header, v0, v1, v2, box.low);
             uvec3 cell = box.low;
             for (uint i = 0u; i < count; ++i) {
-                mask |= uint(triangle_overlaps_cell(header, v0, v1, v2, cell)) << i;
+                mask |= uint(meets(axes, header, cell - box.low)) << i;
                 cell = next_cell(box, cell);
             }
             count = uint(bitCount(mask));

@@ -69,8 +69,9 @@ void main() {
             uint row = local / size.x;
             uvec3 cell = box.low + uvec3(local - row * size.x, row % size.y, row / size.y);
             bool test = EXACT && !is_row(box);
+            SeparatingAxes axes = separating_axes(header, v0, v1, v2, box.low);
             for (uint i = pair; i < end; ++i) {
-                bool overlaps = !test || triangle_overlaps_cell(header, v0, v1, v2, cell);
+                bool overlaps = !test || meets(axes, header, cell - box.low);
                 keys.word[i] = overlaps ? cell_id(cell, header.resolution) : header.cell_count;
                 values.word[i] = triangle;
                 cell = next_cell(box, cell);

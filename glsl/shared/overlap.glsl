@@ -58,43 +58,87 @@ bool is_row(CellBox box) {
     return same.x + same.y + same.z >= 2u;
 }
 
-// Whether the axis at right angles to an edge of a triangle and to a box axis parts the triangle from a box of the given half size around
-// the origin, in the plane of the two other box axes. `a` is an end of the edge, `c` the corner across: the ends are projected to the same
-// point but for rounding.
-bool separates(vec2 edge, vec2 half_size, vec2 a, vec2 c) {
-    float p = edge.x * a.y - edge.y * a.x;
-    float q = edge.x * c.y - edge.y * c.x;
-    float reach = abs(edge.y) * half_size.x + abs(edge.x) * half_size.y;
-    return min(p, q) > reach || max(p, q) < -reach;
-}
+// Axes that may part a triangle from a cell: its normal, and those at right angles to one of its edges and to a box axis (after the box axis;
+// an element an edge). The box axes themselves are overlapped_box's. On each axis, seen from the middle of a first cell, the triangle's
+// projection has a middle, and is parted from a cell whose middle is farther away than `reach`: half of both projections.
+struct SeparatingAxes {
+    vec3 edge_x;
+    vec3 edge_y;
+    vec3 edge_z;
+    vec3 middle_x;
+    vec3 middle_y;
+    vec3 middle_z;
+    vec3 reach_x;
+    vec3 reach_y;
+    vec3 reach_z;
+    vec3 normal;
+    float middle;
+    float reach;
+};
 
-// Separating axes: the triangle's normal and the nine products of an edge and a box axis; the box axes are overlapped_box's. The box is
-// padded three times: one and a half as above, the rest for the rounding of the projections, which comes to little more than one pad.
-bool triangle_overlaps_cell(GridHeader grid, vec3 v0, vec3 v1, vec3 v2, uvec3 cell) {
-    vec3 low = boundary(grid.box_min, grid.cell_size, vec3(cell));
+// The cells are padded four times: one and a half as above, the rest for rounding, which comes to little more than two pads. `end` and
+// `across` are an end of each edge and the corner across: the two ends are projected to the same point but for rounding.
+SeparatingAxes separating_axes(GridHeader grid, vec3 v0, vec3 v1, vec3 v2, uvec3 first) {
     vec3 half_size = grid.cell_size * 0.5;
-    vec3 centre = low + half_size;
-    half_size += vec3(grid.pad * 3.0);
+    vec3 centre = boundary(grid.box_min, grid.cell_size, vec3(first)) + half_size;
+    half_size += vec3(grid.pad * 4.0);
     vec3 a = v0 - centre;
     vec3 b = v1 - centre;
     vec3 c = v2 - centre;
-    vec3 e0 = b - a;
-    vec3 e1 = c - b;
-    vec3 e2 = a - c;
-    // No operator that leaves the rest out: that would be a branch for each.
-    bvec3 apart_x = bvec3(separates(e0.yz, half_size.yz, a.yz, c.yz), separates(e1.yz, half_size.yz, b.yz, a.yz),
-                          separates(e2.yz, half_size.yz, c.yz, b.yz));
-    bvec3 apart_y = bvec3(separates(e0.zx, half_size.zx, a.zx, c.zx), separates(e1.zx, half_size.zx, b.zx, a.zx),
-                          separates(e2.zx, half_size.zx, c.zx, b.zx));
-    bvec3 apart_z = bvec3(separates(e0.xy, half_size.xy, a.xy, c.xy), separates(e1.xy, half_size.xy, b.xy, a.xy),
-                          separates(e2.xy, half_size.xy, c.xy, b.xy));
+    vec3 e0 = v1 - v0;
+    vec3 e1 = v2 - v1;
+    vec3 e2 = v0 - v2;
+    SeparatingAxes axes;
+    axes.edge_x = vec3(e0.x, e1.x, e2.x);
+    axes.edge_y = vec3(e0.y, e1.y, e2.y);
+    axes.edge_z = vec3(e0.z, e1.z, e2.z);
+    vec3 end_x = vec3(a.x, b.x, c.x);
+    vec3 end_y = vec3(a.y, b.y, c.y);
+    vec3 end_z = vec3(a.z, b.z, c.z);
+    vec3 across_x = vec3(c.x, a.x, b.x);
+    vec3 across_y = vec3(c.y, a.y, b.y);
+    vec3 across_z = vec3(c.z, a.z, b.z);
+    vec3 length_x = abs(axes.edge_x);
+    vec3 length_y = abs(axes.edge_y);
+    vec3 length_z = abs(axes.edge_z);
+    vec3 p = axes.edge_y * end_z - axes.edge_z * end_y;
+    vec3 q = axes.edge_y * across_z - axes.edge_z * across_y;
+    axes.middle_x = (p + q) * 0.5;
+    axes.reach_x = length_z * half_size.y + length_y * half_size.z + abs(p - q) * 0.5;
+    p = axes.edge_z * end_x - axes.edge_x * end_z;
+    q = axes.edge_z * across_x - axes.edge_x * across_z;
+    axes.middle_y = (p + q) * 0.5;
+    axes.reach_y = length_x * half_size.z + length_z * half_size.x + abs(p - q) * 0.5;
+    p = axes.edge_x * end_y - axes.edge_y * end_x;
+    q = axes.edge_x * across_y - axes.edge_y * across_x;
+    axes.middle_z = (p + q) * 0.5;
+    axes.reach_z = length_y * half_size.x + length_x * half_size.y + abs(p - q) * 0.5;
     vec3 normal = vec3(e0.y * e1.z - e0.z * e1.y, e0.z * e1.x - e0.x * e1.z, e0.x * e1.y - e0.y * e1.x);
-    float p0 = normal.x * a.x + normal.y * a.y + normal.z * a.z;
-    float p1 = normal.x * b.x + normal.y * b.y + normal.z * b.z;
-    float p2 = normal.x * c.x + normal.y * c.y + normal.z * c.z;
-    float reach = abs(normal.x) * half_size.x + abs(normal.y) * half_size.y + abs(normal.z) * half_size.z;
-    bvec4 apart = bvec4(any(apart_x), any(apart_y), any(apart_z), min(p0, min(p1, p2)) > reach || max(p0, max(p1, p2)) < -reach);
+    vec3 heights = normal.x * end_x + normal.y * end_y + normal.z * end_z;
+    float low = min(heights.x, min(heights.y, heights.z));
+    float high = max(heights.x, max(heights.y, heights.z));
+    axes.normal = normal;
+    axes.middle = (low + high) * 0.5;
+    axes.reach = abs(normal.x) * half_size.x + abs(normal.y) * half_size.y + abs(normal.z) * half_size.z + (high - low) * 0.5;
+    return axes;
+}
+
+// Whether none of the axes parts the triangle from the cell that lies so many cells from the first one.
+bool meets(SeparatingAxes axes, GridHeader grid, uvec3 cells_away) {
+    vec3 away = vec3(cells_away) * grid.cell_size;
+    vec3 x = axes.middle_x - (axes.edge_y * away.z - axes.edge_z * away.y);
+    vec3 y = axes.middle_y - (axes.edge_z * away.x - axes.edge_x * away.z);
+    vec3 z = axes.middle_z - (axes.edge_x * away.y - axes.edge_y * away.x);
+    float along = axes.middle - (axes.normal.x * away.x + axes.normal.y * away.y + axes.normal.z * away.z);
+    // No operator that leaves the rest out: that would be a branch for each.
+    bvec4 apart = bvec4(any(greaterThan(abs(x), axes.reach_x)), any(greaterThan(abs(y), axes.reach_y)), any(greaterThan(abs(z), axes.reach_z)),
+                        abs(along) > axes.reach);
     return !any(apart);
+}
+
+// Whether a triangle meets one cell.
+bool triangle_overlaps_cell(GridHeader grid, vec3 v0, vec3 v1, vec3 v2, uvec3 cell) {
+    return meets(separating_axes(grid, v0, v1, v2, cell), grid, uvec3(0u));
 }
 
 #endif

@@ -60,29 +60,71 @@ pub fn triangle_cells(grid: &GridHeader, v: [Vec3; 3]) -> CellBox {
 /// Cells of a box whose overlap is told by one word. A box of more cells is a large one.
 pub const SMALL_BOX: u32 = 32;
 
-/// Whether the axis at right angles to an edge of a triangle and to a box axis parts the triangle from a box of the given half size around
-/// the origin, in the plane of the two other box axes; `a` is an end of the edge, `c` the corner across.
-pub fn separates(edge: [f32; 2], half_size: [f32; 2], a: [f32; 2], c: [f32; 2]) -> bool {
-    let [p, q] = [a, c].map(|v| edge[0] * v[1] - edge[1] * v[0]);
-    let reach = edge[1].abs() * half_size[0] + edge[0].abs() * half_size[1];
-    min_f32(p, q) > reach || max_f32(p, q) < -reach
+/// An axis at right angles to an edge of a triangle and to a box axis, in the plane of the two other box axes.
+#[derive(Clone, Copy, Debug)]
+struct EdgeAxis {
+    plane: [usize; 2],
+    edge: [f32; 2],
+    middle: f32,
+    reach: f32,
 }
 
-/// Whether a triangle meets a padded cell, by separating axes; the box's axes are left to [`overlapped_box`].
+/// Axes that may part a triangle from a cell of its box, seen from the middle of a first cell; the box's own axes are left to
+/// [`overlapped_box`].
+#[derive(Clone, Copy, Debug)]
+pub struct SeparatingAxes {
+    first: [u32; 3],
+    cell_size: Vec3,
+    edges: [EdgeAxis; 9],
+    normal: Vec3,
+    middle: f32,
+    reach: f32,
+}
+
+impl SeparatingAxes {
+    /// Of a triangle with corners `v`.
+    pub fn new(grid: &GridHeader, v: [Vec3; 3], first: [u32; 3]) -> SeparatingAxes {
+        let half_cell = grid.cell_size.map(|size| size * 0.5);
+        let centre = add(boundary(grid.box_min, grid.cell_size, first.map(|i| i as f32)), half_cell);
+        let half_size = half_cell.map(|half| half + grid.pad * 4.0);
+        let ends = v.map(|v| sub(v, centre));
+        let edges: [Vec3; 3] = std::array::from_fn(|i| sub(v[(i + 1) % 3], v[i]));
+        let axis = |n: usize| {
+            let (i, plane) = (n % 3, [[1, 2], [2, 0], [0, 1]][n / 3]);
+            let in_plane = |v: Vec3| plane.map(|axis: usize| v[axis]);
+            let (edge, half_size) = (in_plane(edges[i]), in_plane(half_size));
+            let [p, q] = [ends[i], ends[(i + 2) % 3]].map(in_plane).map(|v| edge[0] * v[1] - edge[1] * v[0]);
+            let reach = edge[1].abs() * half_size[0] + edge[0].abs() * half_size[1] + (p - q).abs() * 0.5;
+            EdgeAxis { plane, edge, middle: (p + q) * 0.5, reach }
+        };
+        let [e0, e1, _] = edges;
+        let normal = [e0[1] * e1[2] - e0[2] * e1[1], e0[2] * e1[0] - e0[0] * e1[2], e0[0] * e1[1] - e0[1] * e1[0]];
+        let [p0, p1, p2] = ends.map(|v| normal[0] * v[0] + normal[1] * v[1] + normal[2] * v[2]);
+        let (low, high) = (min_f32(p0, min_f32(p1, p2)), max_f32(p0, max_f32(p1, p2)));
+        let reach = normal[0].abs() * half_size[0] + normal[1].abs() * half_size[1] + normal[2].abs() * half_size[2];
+        SeparatingAxes {
+            first,
+            cell_size: grid.cell_size,
+            edges: std::array::from_fn(axis),
+            normal,
+            middle: (low + high) * 0.5,
+            reach: reach + (high - low) * 0.5,
+        }
+    }
+
+    /// Whether none of the axes parts the triangle from a padded cell, none of whose numbers is below the first cell's.
+    pub fn meets(&self, cell: [u32; 3]) -> bool {
+        let away: Vec3 = std::array::from_fn(|axis| (cell[axis] - self.first[axis]) as f32 * self.cell_size[axis]);
+        let apart_along_edges = self.edges.iter().any(|axis| {
+            let [x, y] = axis.plane.map(|i| away[i]);
+            (axis.middle - (axis.edge[0] * y - axis.edge[1] * x)).abs() > axis.reach
+        });
+        let along = self.middle - (self.normal[0] * away[0] + self.normal[1] * away[1] + self.normal[2] * away[2]);
+        !(apart_along_edges || along.abs() > self.reach)
+    }
+}
+
+/// Whether a triangle meets one padded cell.
 pub fn triangle_overlaps_cell(grid: &GridHeader, v: [Vec3; 3], cell: [u32; 3]) -> bool {
-    let low = boundary(grid.box_min, grid.cell_size, cell.map(|i| i as f32));
-    let half_cell = grid.cell_size.map(|size| size * 0.5);
-    let centre = add(low, half_cell);
-    let half_size = half_cell.map(|half| half + grid.pad * 3.0);
-    let v = v.map(|v| sub(v, centre));
-    let edges: [Vec3; 3] = std::array::from_fn(|i| sub(v[(i + 1) % 3], v[i]));
-    let apart_along_edges = [[1, 2], [2, 0], [0, 1]].into_iter().any(|plane| {
-        let in_plane = |v: Vec3| plane.map(|axis: usize| v[axis]);
-        (0..3).any(|i| separates(in_plane(edges[i]), in_plane(half_size), in_plane(v[i]), in_plane(v[(i + 2) % 3])))
-    });
-    let [e0, e1, _] = edges;
-    let normal = [e0[1] * e1[2] - e0[2] * e1[1], e0[2] * e1[0] - e0[0] * e1[2], e0[0] * e1[1] - e0[1] * e1[0]];
-    let [p0, p1, p2] = v.map(|v| normal[0] * v[0] + normal[1] * v[1] + normal[2] * v[2]);
-    let reach = normal[0].abs() * half_size[0] + normal[1].abs() * half_size[1] + normal[2].abs() * half_size[2];
-    !(apart_along_edges || min_f32(p0, min_f32(p1, p2)) > reach || max_f32(p0, max_f32(p1, p2)) < -reach)
+    SeparatingAxes::new(grid, v, cell).meets(cell)
 }

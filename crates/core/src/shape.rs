@@ -32,7 +32,7 @@ pub struct Shape {
 impl Shape {
     /// For devices whose invocations run on CPU cores, in vectors of 4 to 16 lanes.
     pub const CPU: Shape = Shape {
-        map_size: 64,
+        map_size: 256,
         scan_size: 16,
         scan_items: 256,
         reduce_items: 64,

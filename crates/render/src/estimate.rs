@@ -1,7 +1,7 @@
 //! The grid that a scene would get, reckoned on the CPU: for a look at a scene where no device is at hand.
 
 use gridwalk::gridwalk_core::layout::Bounds;
-use gridwalk::gridwalk_core::overlap::{triangle_cells, triangle_overlaps_cell};
+use gridwalk::gridwalk_core::overlap::{SeparatingAxes, triangle_cells};
 use gridwalk::gridwalk_core::twin::configure::{Configure, configure_header};
 use gridwalk::{Capacity, Overlap, Shape, region_bytes};
 use gridwalk_scene::Scene;
@@ -68,7 +68,10 @@ pub fn estimate_grid(scene: &Scene, settings: &BuildSettings) -> Result<GridEsti
             // A triangle meets every cell of a box of one row. More pairs than any build has room for are not worth the time.
             let test = info.exact && size.iter().filter(|n| **n == 1).count() < 2 && box_pairs <= gridwalk::MAX_PAIRS.into();
             let listed = match u32::try_from(in_box) {
-                Ok(count) if test => (0..count).filter(|n| triangle_overlaps_cell(&header, corners, cells.cell(*n))).count() as u64,
+                Ok(count) if test => {
+                    let axes = SeparatingAxes::new(&header, corners, cells.low);
+                    (0..count).filter(|n| axes.meets(cells.cell(*n))).count() as u64
+                }
                 _ => in_box,
             };
             pairs = pairs.saturating_add(listed);

@@ -3,7 +3,7 @@ use gridwalk::kernels::{OVERLAP_COUNT, OVERLAP_EMIT, OVERLAP_EMIT_LARGE};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::gather::gathered_state;
 use gridwalk_core::layout::{BuildState, GridHeader};
-use gridwalk_core::overlap::triangle_overlaps_cell;
+use gridwalk_core::overlap::{SeparatingAxes, triangle_cells, triangle_overlaps_cell};
 use gridwalk_core::sort::writes_a;
 use gridwalk_core::twin::overlap_count::overlap_count;
 use gridwalk_core::twin::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
@@ -200,6 +200,8 @@ fn exact_overlap_keeps_the_padding() {
         if overlaps(&double, low.map(|x| x - pad), high.map(|x| x + pad)) {
             met += 1;
             assert!(triangle_overlaps_cell(&grid, v, cell), "seed {seed}: cell {cell:?}, {v:?}");
+            let first = triangle_cells(&grid, v).low;
+            assert!(SeparatingAxes::new(&grid, v, first).meets(cell), "seed {seed}: cell {cell:?} seen from {first:?}, {v:?}");
         } else if overlaps(&double, low.map(|x| x - 1.2 * pad), high.map(|x| x + 1.2 * pad)) {
             close += 1;
         }

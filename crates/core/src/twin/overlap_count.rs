@@ -3,7 +3,7 @@
 use crate::dispatch::workgroups;
 use crate::gather::is_dropped;
 use crate::layout::{BuildState, GridHeader};
-use crate::overlap::{SMALL_BOX, triangle_cells, triangle_overlaps_cell};
+use crate::overlap::{SMALL_BOX, SeparatingAxes, triangle_cells};
 use crate::shape::Shape;
 use crate::vector::Vec3;
 
@@ -45,7 +45,8 @@ pub fn overlap_count(
             counts[triangle as usize] = all;
             continue;
         }
-        let meets = |n: &u32| !exact || cells.is_row() || triangle_overlaps_cell(grid, v, cells.cell(*n));
+        let axes = SeparatingAxes::new(grid, v, cells.low);
+        let meets = |n: &u32| !exact || cells.is_row() || axes.meets(cells.cell(*n));
         let mask = (0..all).filter(meets).fold(0u32, |mask, n| mask | 1 << n);
         counts[triangle as usize] = mask.count_ones();
         masks[triangle as usize] = mask;

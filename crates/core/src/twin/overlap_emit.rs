@@ -2,7 +2,7 @@
 
 use crate::grid::cell_id;
 use crate::layout::GridHeader;
-use crate::overlap::{CellBox, triangle_cells, triangle_overlaps_cell};
+use crate::overlap::{CellBox, SeparatingAxes, triangle_cells};
 use crate::shape::Shape;
 use crate::vector::Vec3;
 
@@ -60,9 +60,10 @@ pub fn overlap_emit_large(shape: &Shape, groups: [u32; 3], exact: bool, emission
         }
         let (v, cells) = emission.cells(triangle);
         let test = exact && !cells.is_row();
+        let axes = SeparatingAxes::new(emission.grid, v, cells.low);
         for pair in ends[0]..ends[1].min(last) {
             let cell = cells.cell(pair - ends[0]);
-            let overlaps = !test || triangle_overlaps_cell(emission.grid, v, cell);
+            let overlaps = !test || axes.meets(cell);
             emission.keys[pair as usize] = if overlaps { cell_id(cell, emission.grid.resolution) } else { emission.grid.cell_count };
             emission.values[pair as usize] = triangle as u32;
         }
