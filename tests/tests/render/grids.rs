@@ -110,6 +110,17 @@ fn rays_keep_their_places() {
     assert_eq!(batch.read_hits().unwrap(), hits[..1000]);
     batch.any_hit(&grid).unwrap();
     assert_eq!(batch.read_occluded().unwrap(), answers[..1000]);
+    assert_eq!(batch.sort_ms(), 0.0);
+    // The order of all of them, traced part by part.
+    let mut batch = RayBatch::sorted(context(), &rays).unwrap();
+    for _ in 0..2 {
+        let ms = batch.closest_hit(&grid).unwrap();
+        assert!(ms > batch.sort_ms() && (batch.sort_ms() > 0.0 || !context().has_timestamps()));
+        assert_eq!(batch.read_hits().unwrap(), hits);
+        batch.any_hit(&grid).unwrap();
+        assert_eq!(batch.read_occluded().unwrap(), answers);
+    }
+    assert!(RayBatch::sorted(context(), &[]).unwrap().closest_hit(&grid).is_ok());
 }
 
 #[test]

@@ -143,6 +143,11 @@ pub struct Common {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 
+    /// Order in which we trace rays; sorting is part of the time, and rivals get the rays as they are given: as given; sorted by the library;
+    /// or sorted where the rays are in no order of their own: diffuse, any
+    #[arg(long, default_value = "auto", value_name = "ORDER")]
+    pub ray_order: RayOrder,
+
     /// Threads of Embree, and of lavapipe by LP_NUM_THREADS [default: LP_NUM_THREADS, or the machine's]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
@@ -206,6 +211,28 @@ pub enum Overlap {
     Box,
     /// By the triangle itself.
     Exact,
+}
+
+/// The order in which we trace rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RayOrder {
+    /// As they are given.
+    Given,
+    /// Sorted by the library, which is part of the time.
+    Sorted,
+    /// Sorted where they are in no order of their own.
+    Auto,
+}
+
+impl RayOrder {
+    /// Whether rays of a kind are sorted.
+    pub fn sorts(self, kind: &str) -> bool {
+        match self {
+            RayOrder::Given => false,
+            RayOrder::Sorted => true,
+            RayOrder::Auto => matches!(kind, "diffuse" | "any"),
+        }
+    }
 }
 
 /// `RTCBuildQuality` of a tree to trace through.

@@ -21,6 +21,8 @@ pub struct Set {
     pub kind: &'static str,
     pub query: Query,
     pub rays: Vec<Ray>,
+    /// Whether we sort the rays before we trace them; rivals trace them as they are.
+    pub sorts: bool,
 }
 
 /// Which of its trees a rival is to trace through. A grid is always the same.

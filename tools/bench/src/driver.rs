@@ -347,7 +347,7 @@ mod tests {
         let mut rival = DriverRival::new(&Rc::new(driver), scene.geometry());
         let ray = |x: f32| Ray { origin: [x, 0.25, 0.0], t_min: 0.0, direction: [0.0, 0.0, 1.0], t_max: f32::INFINITY };
         let rays: Vec<Ray> = [0.5, 2.0].map(ray).repeat(100);
-        let sets = [Query::Closest, Query::Any].map(|query| Arc::new(Set { kind: "test", query, rays: rays.clone() }));
+        let sets = [Query::Closest, Query::Any].map(|query| Arc::new(Set { kind: "test", query, rays: rays.clone(), sorts: false }));
         rival.load(&sets).unwrap();
         let hit = Hit { t: 1.0, u: 0.5, v: 0.25, triangle: 0 };
         for tree in [Tree::Fast, Tree::Best] {

@@ -76,7 +76,8 @@ fn frame(
     let reflection = Traced::new(player.grid(), surface.reflections(&camera))?;
     let mut shadow = surface.shadows(&camera, light);
     shadow.extend(surface.shadows(&reflection, light));
-    let sets = [closest("camera", camera.rays), closest("reflection", reflection.rays), any_hit("shadow", shadow)];
+    let order = arguments.common.ray_order;
+    let sets = [closest("camera", camera.rays, order), closest("reflection", reflection.rays, order), any_hit("shadow", shadow, order)];
 
     let mut field = Field { ours: Ours::moving(player), rivals: contenders };
     field.each(|contender| {

@@ -7,7 +7,7 @@ use gridwalk::{Capacity, Hit, Ray, UNFINISHED};
 use gridwalk_render::{BuildSettings, GpuScene, Grid, GridBuilder, StepTime};
 use gridwalk_scene::{Camera, Mesh};
 
-use crate::arguments::{Arguments, Common, Overlap, Part};
+use crate::arguments::{Arguments, Common, Overlap, Part, RayOrder};
 use crate::contender::{Answers, Contender, Query, Set, Tree, Turn, times, turns};
 use crate::counters::walks;
 use crate::ours::Ours;
@@ -116,7 +116,7 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
         }
         let gpu = GpuScene::upload(builder.context(), object)?;
         let alone = Ours::still(builder.build(&gpu, &settings)?, &gpu);
-        let set = looking(camera, arguments.common.size, alone.grid())?;
+        let set = looking(camera, &arguments.common, alone.grid())?;
         rays.push(trace(&mut field, runs, &set, Some(alone))?);
     }
 
@@ -177,8 +177,9 @@ impl<'a> Sets<'a> {
     }
 
     fn camera(&mut self) -> Arc<Set> {
-        let rays = || camera_rays(&self.loaded.camera, self.arguments.common.size);
-        Arc::clone(self.camera.get_or_insert_with(|| closest("camera", rays())))
+        let Common { size, ray_order, .. } = self.arguments.common;
+        let rays = || camera_rays(&self.loaded.camera, size);
+        Arc::clone(self.camera.get_or_insert_with(|| closest("camera", rays(), ray_order)))
     }
 
     fn seen(&mut self, grid: &Grid) -> Result<&(Surface, Traced)> {
@@ -194,8 +195,9 @@ impl<'a> Sets<'a> {
             return Ok(Arc::clone(set));
         }
         let light = self.loaded.scene.lights.first().copied();
+        let order = self.arguments.common.ray_order;
         let (surface, seen) = self.seen(grid)?;
-        let set = any_hit("shadow", surface.shadows(seen, light));
+        let set = any_hit("shadow", surface.shadows(seen, light), order);
         self.shadow = Some(Arc::clone(&set));
         Ok(set)
     }
@@ -203,6 +205,7 @@ impl<'a> Sets<'a> {
     /// Those that are asked for, but `object`.
     fn wanted(&mut self, grid: &Grid) -> Result<Vec<Arc<Set>>> {
         let measures = |part| self.arguments.measures(part);
+        let order = self.arguments.common.ray_order;
         let [camera, shadow, reflection, diffuse, any] =
             [Part::Camera, Part::Shadow, Part::Reflection, Part::Diffuse, Part::Any].map(measures);
         let mut sets = Vec::new();
@@ -214,17 +217,17 @@ impl<'a> Sets<'a> {
         }
         if reflection {
             let (surface, seen) = self.seen(grid)?;
-            sets.push(closest("reflection", surface.reflections(seen)));
+            sets.push(closest("reflection", surface.reflections(seen), order));
         }
         if diffuse || any {
             let Common { size, seed, .. } = self.arguments.common;
             let size = size.next_multiple_of(8);
             let rays = diffuse_rays(self.mesh, size * size, seed);
             if diffuse {
-                sets.push(closest("diffuse", rays.clone()));
+                sets.push(closest("diffuse", rays.clone(), order));
             }
             if any {
-                sets.push(any_hit("any", rays));
+                sets.push(any_hit("any", rays, order));
             }
         }
         Ok(sets)
@@ -232,20 +235,20 @@ impl<'a> Sets<'a> {
 }
 
 /// Camera rays that hit an object while it is all that there is.
-fn looking(camera: &Camera, size: u32, alone: &Grid) -> Result<Arc<Set>> {
-    let traced = Traced::new(alone, camera_rays(camera, size))?;
+fn looking(camera: &Camera, common: &Common, alone: &Grid) -> Result<Arc<Set>> {
+    let traced = Traced::new(alone, camera_rays(camera, common.size))?;
     let hits = traced.rays.iter().zip(&traced.hits).filter(|(_, hit)| hit.is_hit());
-    Ok(closest("object", hits.map(|(ray, _)| *ray).collect()))
+    Ok(closest("object", hits.map(|(ray, _)| *ray).collect(), common.ray_order))
 }
 
 /// Rays whose closest hits are wanted.
-pub fn closest(kind: &'static str, rays: Vec<Ray>) -> Arc<Set> {
-    Arc::new(Set { kind, query: Query::Closest, rays })
+pub fn closest(kind: &'static str, rays: Vec<Ray>, order: RayOrder) -> Arc<Set> {
+    Arc::new(Set { kind, query: Query::Closest, rays, sorts: order.sorts(kind) })
 }
 
 /// Rays of which it is asked whether they hit anything.
-pub fn any_hit(kind: &'static str, rays: Vec<Ray>) -> Arc<Set> {
-    Arc::new(Set { kind, query: Query::Any, rays })
+pub fn any_hit(kind: &'static str, rays: Vec<Ray>, order: RayOrder) -> Arc<Set> {
+    Arc::new(Set { kind, query: Query::Any, rays, sorts: order.sorts(kind) })
 }
 
 /// Median of each step over the runs, all of which have the same steps in the same order.
@@ -314,6 +317,7 @@ fn trace(field: &mut Field<'_>, runs: u32, set: &Arc<Set>, mut alone: Option<Our
     let alone = alone.and_then(|_| runs.pop());
     let ours = runs.first().cloned().unwrap_or_default();
     let time = field.compare(&runs, true);
+    let sort_ms = set.sorts.then(|| median(field.ours.take_sorts()));
     let hits = field.ours.answers(0)?.hits;
     let differences = field.rivals.iter_mut().map(|rival| Ok(difference(rival.name(), &set.rays, &hits, &rival.answers(0)?)));
     let differences = differences.collect::<Result<Vec<Difference>>>()?;
@@ -322,6 +326,8 @@ fn trace(field: &mut Field<'_>, runs: u32, set: &Arc<Set>, mut alone: Option<Our
     let is_cpu = field.ours.grid().context().is_cpu();
     Ok(RayReport {
         kind: set.kind.to_owned(),
+        order: if set.sorts { "sorted" } else { "given" }.to_owned(),
+        sort_ms,
         rays,
         hits: count(Hit::is_hit),
         unfinished: count(|hit| hit.triangle == UNFINISHED),

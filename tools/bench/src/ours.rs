@@ -19,17 +19,19 @@ pub struct Ours<'a> {
     batches: Vec<(Query, RayBatch)>,
     /// Steps of each rebuild.
     steps: Vec<Vec<StepTime>>,
+    /// Milliseconds of each trace that sorting took.
+    sorts: Vec<f64>,
 }
 
 impl<'a> Ours<'a> {
     /// A grid over a scene.
     pub fn still(grid: Grid, scene: &'a GpuScene) -> Ours<'a> {
-        Ours { source: Source::Still(Box::new(grid), scene), batches: Vec::new(), steps: Vec::new() }
+        Ours { source: Source::Still(Box::new(grid), scene), batches: Vec::new(), steps: Vec::new(), sorts: Vec::new() }
     }
 
     /// A player's grid, over what it shows now.
     pub fn moving(player: &'a mut Player) -> Ours<'a> {
-        Ours { source: Source::Moving(player), batches: Vec::new(), steps: Vec::new() }
+        Ours { source: Source::Moving(player), batches: Vec::new(), steps: Vec::new(), sorts: Vec::new() }
     }
 
     /// The grid.
@@ -43,6 +45,13 @@ impl<'a> Ours<'a> {
     /// The steps of all rebuilds since the last call but the first, which is no turn that counts.
     pub fn take_steps(&mut self) -> Vec<Vec<StepTime>> {
         std::mem::take(&mut self.steps).into_iter().skip(1).collect()
+    }
+}
+
+impl Ours<'_> {
+    /// Of all traces since the rays were loaded but the first, which is no turn that counts: milliseconds that sorting took.
+    pub fn take_sorts(&mut self) -> impl Iterator<Item = f64> + use<> {
+        std::mem::take(&mut self.sorts).into_iter().skip(1)
     }
 }
 
@@ -68,9 +77,11 @@ impl Contender for Ours<'_> {
 
     fn load(&mut self, sets: &[Arc<Set>]) -> Result<()> {
         self.batches.clear();
+        self.sorts.clear();
         let context = self.grid().context().clone();
         for set in sets {
-            self.batches.push((set.query, RayBatch::new(&context, &set.rays)?));
+            let make = if set.sorts { RayBatch::sorted } else { RayBatch::new };
+            self.batches.push((set.query, make(&context, &set.rays)?));
         }
         Ok(())
     }
@@ -80,11 +91,13 @@ impl Contender for Ours<'_> {
             Source::Still(grid, _) => grid,
             Source::Moving(player) => player.grid(),
         };
-        Ok(match self.batches.get_mut(set) {
-            Some((Query::Closest, batch)) => batch.closest_hit(grid)?,
-            Some((Query::Any, batch)) => batch.any_hit(grid)?,
-            None => 0.0,
-        })
+        let Some((query, batch)) = self.batches.get_mut(set) else { return Ok(0.0) };
+        let ms = match query {
+            Query::Closest => batch.closest_hit(grid)?,
+            Query::Any => batch.any_hit(grid)?,
+        };
+        self.sorts.push(batch.sort_ms());
+        Ok(ms)
     }
 
     fn answers(&mut self, set: usize) -> Result<Answers> {

@@ -214,6 +214,12 @@ impl Side {
 pub struct RayReport {
     /// `camera`, `shadow`, `reflection`, `diffuse`, `any` or `object`.
     pub kind: String,
+    /// In which order we traced them: `given` or `sorted`.
+    #[serde(default)]
+    pub order: String,
+    /// Median of the milliseconds that sorting took, which our times include; none where the rays were not sorted.
+    #[serde(default)]
+    pub sort_ms: Option<f64>,
     /// How many.
     pub rays: u64,
     /// Of them hit something.

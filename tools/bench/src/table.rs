@@ -138,7 +138,7 @@ impl Report {
     }
 
     fn times(&self) -> Vec<Vec<String>> {
-        let mut first = head(&["scene", "", "ms", "Mrays/s"]);
+        let mut first = head(&["scene", "", "ms", "of it sort", "Mrays/s"]);
         for rival in &self.setup.rivals {
             first.extend([format!("{} ms", rival.name)].into_iter().chain(head(&["ratio", "best", "processor"])));
         }
@@ -147,7 +147,9 @@ impl Report {
             for (name, comparison) in scene.figures() {
                 let rays = scene.rays.iter().find(|rays| rays.kind == name);
                 let mut row = vec![scene.scene.clone(), name.to_owned(), number(Some(comparison.ours.median_ms))];
-                row.push(rays.map_or(String::new(), |rays| number(Some(rays.mrays))));
+                row.extend(rays.map_or([String::new(), String::new()], |rays| {
+                    [rays.sort_ms.map_or(String::new(), |ms| number(Some(ms))), number(Some(rays.mrays))]
+                }));
                 row.extend(self.setup.rivals.iter().flat_map(|rival| against(comparison.against(&rival.name))));
                 if let Some(alone) = rays.and_then(|rays| rays.alone.as_ref()?.ratio) {
                     row.push(format!("{} times slower than the object alone", number(Some(alone.recip()))));
