@@ -44,8 +44,7 @@ void main() {
     if (gl_LocalInvocationID.x == 0u) {
         uint count = min(total, triangle_capacity);
         state.state = gathered_state(count, total);
-        arguments.arguments.gather = uvec4(split_workgroups(count, MAP_SIZE), 0u);
-        arguments.arguments.bounds_reduce = uvec4(split_workgroups(max(count, 1u), BOUNDS_TILE), 0u);
+        arguments.arguments.gather = uvec4(split_workgroups(max(count, 1u), BOUNDS_TILE), 0u);
         arguments.arguments.overlap_count = uvec4(split_workgroups(count + 1u, MAP_SIZE), 0u);
         arguments.arguments.offsets_scan = uvec4(split_workgroups(count + 1u, SCAN_TILE), 0u);
     }

@@ -43,7 +43,6 @@ struct DispatchArguments {
     uvec4 brick_distance;
     // Written only where geometries are counted on the device.
     uvec4 gather;
-    uvec4 bounds_reduce;
     uvec4 overlap_count;
     uvec4 offsets_scan;
     // Written only where rays are sorted; then only this and the first passes' of the sort are.

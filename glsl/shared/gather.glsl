@@ -2,6 +2,7 @@
 #ifndef GATHER_GLSL
 #define GATHER_GLSL
 
+#include "shared/bounds_types.glsl"
 #include "shared/build.glsl"
 #include "shared/intersect.glsl"
 
@@ -15,13 +16,20 @@ struct TriangleWords {
     uint mask;
 };
 
-// A triangle with a vertex that is not finite is dropped: it stays in its place, all zero, and no cell lists it.
-void write_triangle(TriangleWordsOut triangles, uint triangle, vec3 v0, vec3 v1, vec3 v2, bool is_whole, TriangleWords words) {
+// A triangle with a vertex that is not finite is dropped: it stays in its place, all zero, and no cell lists it. Any other is in `bounds`.
+void write_triangle(TriangleWordsOut triangles, uint triangle, vec3 v0, vec3 v1, vec3 v2, bool is_whole, TriangleWords words,
+                    inout Bounds bounds) {
     bool dropped = !(is_whole && is_finite(v0) && is_finite(v1) && is_finite(v2));
     uint flags = words.flags | (dropped ? TRIANGLE_DROPPED : 0u);
     triangles.vertex[3u * triangle] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v0), flags);
     triangles.vertex[3u * triangle + 1u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v1), words.id);
     triangles.vertex[3u * triangle + 2u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v2), words.mask);
+    if (dropped) {
+        bounds.dropped += 1u;
+    } else {
+        bounds.low = min(bounds.low, min(v0, min(v1, v2)));
+        bounds.high = max(bounds.high, max(v0, max(v1, v2)));
+    }
 }
 
 // The head of a build's state, from which all later steps take the number of triangles.

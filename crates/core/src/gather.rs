@@ -1,7 +1,8 @@
 //! Triangles as a build first writes them, as `shared/gather.glsl` has them.
 
-use crate::layout::{BuildState, OVERFLOW_TRIANGLES, TRIANGLE_DROPPED};
-use crate::vector::{Vec3, is_finite};
+use crate::layout::{Bounds, BuildState, OVERFLOW_TRIANGLES, TRIANGLE_DROPPED};
+use crate::shape::Shape;
+use crate::vector::{Vec3, is_finite, max, min};
 
 /// The vertices of a triangle; `None` if one is not finite or its index lies outside of the positions: the triangle is dropped.
 pub fn gather_triangle(positions: &[f32], indices: &[u32], vertex_count: u32, triangle: u32) -> Option<[Vec3; 3]> {
@@ -40,6 +41,30 @@ pub fn triangle_words(vertices: Option<[Vec3; 3]>, words: TriangleWords) -> [[f3
 /// Whether a triangle in memory was dropped, by its first vertex.
 pub fn is_dropped(first: [f32; 4]) -> bool {
     first[3].to_bits() & TRIANGLE_DROPPED != 0
+}
+
+/// The union of two boxes.
+pub fn unite(a: Bounds, b: Bounds) -> Bounds {
+    Bounds { low: min(a.low, b.low), dropped: a.dropped + b.dropped, high: max(a.high, b.high), reserved: 0 }
+}
+
+/// The box of a triangle in memory.
+fn triangle_bounds(vertices: &[[f32; 4]]) -> Bounds {
+    if is_dropped(vertices[0]) {
+        return Bounds { dropped: 1, ..Bounds::EMPTY };
+    }
+    let [a, b, c] = [0, 1, 2].map(|corner| [vertices[corner][0], vertices[corner][1], vertices[corner][2]]);
+    Bounds { low: min(a, min(b, c)), dropped: 0, high: max(a, max(b, c)), reserved: 0 }
+}
+
+/// The boxes of the tiles of triangles that lie in memory.
+pub fn tile_bounds(shape: &Shape, triangles: &[[f32; 4]], partials: &mut [Bounds]) {
+    let tile_size = 3 * shape.bounds_tile() as usize;
+    // One tile even without a triangle.
+    partials[0] = Bounds::EMPTY;
+    for (partial, tile) in partials.iter_mut().zip(triangles.chunks(tile_size)) {
+        *partial = tile.chunks(3).map(triangle_bounds).fold(Bounds::EMPTY, unite);
+    }
 }
 
 /// The head of a build's state, from which all later steps take the number of triangles.

@@ -136,8 +136,6 @@ pub struct DispatchArguments {
     pub brick_distance: [u32; 4],
     /// Of `gather_records`; this and those below are written only where geometries are counted on the device.
     pub gather: [u32; 4],
-    /// Of `bounds_reduce`.
-    pub bounds_reduce: [u32; 4],
     /// Of `overlap_count` and `overlap_emit`.
     pub overlap_count: [u32; 4],
     /// Of the reduce and the downsweep of the offsets' scan.

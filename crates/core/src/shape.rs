@@ -12,7 +12,7 @@ pub struct Shape {
     pub scan_size: u32,
     /// Elements an invocation of the scan; no number of elements an invocation is above 65,536.
     pub scan_items: u32,
-    /// Triangles an invocation of the scene box's reduction.
+    /// Triangles an invocation of the gathering, which reduces the scene box.
     pub reduce_items: u32,
     /// Bricks an invocation of `brick_reduce`.
     pub reduce_bricks: u32,
@@ -33,10 +33,10 @@ impl Shape {
     /// For devices whose invocations run on CPU cores, in vectors of 4 to 16 lanes.
     pub const CPU: Shape = Shape {
         map_size: 256,
-        scan_size: 16,
-        scan_items: 256,
-        reduce_items: 64,
-        reduce_bricks: 4,
+        scan_size: 8,
+        scan_items: 512,
+        reduce_items: 128,
+        reduce_bricks: 16,
         sort_bits: 10,
         sort_size: 8,
         sort_keys: 8192,
@@ -78,7 +78,7 @@ impl Shape {
         self.scan_size * self.scan_items
     }
 
-    /// Triangles a workgroup of the scene box's reduction.
+    /// Triangles a workgroup of the gathering.
     pub const fn bounds_tile(&self) -> u32 {
         self.scan_size * self.reduce_items
     }
@@ -133,8 +133,8 @@ impl Shape {
     pub fn local_size(&self, kernel: &Kernel) -> u32 {
         match kernel.name {
             "sort_histogram" | "sort_scatter" => self.sort_size,
-            "bounds_reduce" | "bounds_spine" | "brick_reduce" | "geometry_scan" | "report_spine" | "scan_reduce" | "scan_spine"
-            | "scan_downsweep" => self.scan_size,
+            "bounds_spine" | "brick_reduce" | "gather" | "gather_records" | "geometry_scan" | "report_spine" | "scan_reduce"
+            | "scan_spine" | "scan_downsweep" => self.scan_size,
             _ => self.map_size,
         }
     }

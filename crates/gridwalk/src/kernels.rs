@@ -44,18 +44,6 @@ pub static ANY_HIT: Kernel = Kernel {
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
 
-/// Kernel `bounds_reduce`, from `glsl/cooperative/bounds_reduce.comp`.
-pub static BOUNDS_REDUCE: Kernel = Kernel {
-    name: "bounds_reduce",
-    kind: Kind::Cooperative,
-    spirv: spirv!("../spirv/bounds_reduce.spv"),
-    local_size: [256, 1, 1],
-    local_size_ids: [Some(0), None, None],
-    push_constant_size: 24,
-    accesses: &[("state", Access::Read), ("triangles", Access::Read), ("partials", Access::Write)],
-    spec_constants: &[(1, "TRIANGLES_EACH", 8)],
-};
-
 /// Kernel `bounds_spine`, from `glsl/cooperative/bounds_spine.comp`.
 pub static BOUNDS_SPINE: Kernel = Kernel {
     name: "bounds_spine",
@@ -234,28 +222,40 @@ pub static COUNT_HITS: Kernel = Kernel {
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0)],
 };
 
-/// Kernel `gather`, from `glsl/map/gather.comp`.
+/// Kernel `gather`, from `glsl/cooperative/gather.comp`.
 pub static GATHER: Kernel = Kernel {
     name: "gather",
-    kind: Kind::Map,
+    kind: Kind::Cooperative,
     spirv: spirv!("../spirv/gather.spv"),
-    local_size: [64, 1, 1],
+    local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 40,
-    accesses: &[("positions", Access::Read), ("indices", Access::Read), ("triangles", Access::Write), ("state", Access::Write)],
-    spec_constants: &[],
+    push_constant_size: 48,
+    accesses: &[
+        ("positions", Access::Read),
+        ("indices", Access::Read),
+        ("triangles", Access::Write),
+        ("state", Access::Write),
+        ("partials", Access::Write),
+    ],
+    spec_constants: &[(1, "TRIANGLES_EACH", 8)],
 };
 
-/// Kernel `gather_records`, from `glsl/map/gather_records.comp`.
+/// Kernel `gather_records`, from `glsl/cooperative/gather_records.comp`.
 pub static GATHER_RECORDS: Kernel = Kernel {
     name: "gather_records",
-    kind: Kind::Map,
+    kind: Kind::Cooperative,
     spirv: spirv!("../spirv/gather_records.spv"),
-    local_size: [64, 1, 1],
+    local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 40,
-    accesses: &[("records", Access::Read), ("firsts", Access::Read), ("state", Access::Read), ("triangles", Access::Write)],
-    spec_constants: &[],
+    push_constant_size: 48,
+    accesses: &[
+        ("records", Access::Read),
+        ("firsts", Access::Read),
+        ("state", Access::Read),
+        ("triangles", Access::Write),
+        ("partials", Access::Write),
+    ],
+    spec_constants: &[(1, "TRIANGLES_EACH", 8)],
 };
 
 /// Kernel `geometry_scan`, from `glsl/cooperative/geometry_scan.comp`.
@@ -501,7 +501,6 @@ pub static TRACE_CONTINUE_ARGS: Kernel = Kernel {
 /// Every kernel of this crate, in order of name.
 pub static ALL: &[&Kernel] = &[
     &ANY_HIT,
-    &BOUNDS_REDUCE,
     &BOUNDS_SPINE,
     &BRICK_DISTANCE_X,
     &BRICK_DISTANCE_Y,
@@ -575,16 +574,6 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, reserved) == 28);
     assert!(size(|host: &Host| &host.reserved) == 4);
     assert!(size_of::<Host>() == 32);
-};
-const _: () = {
-    use crate::push::BoundsReduce as Host;
-    assert!(core::mem::offset_of!(Host, state) == 0);
-    assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, triangles) == 8);
-    assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 16);
-    assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(size_of::<Host>() == 24);
 };
 const _: () = {
     use crate::push::BoundsSpine as Host;
@@ -841,13 +830,11 @@ const _: () = {
     assert!(size(|host: &Host| &host.brick_distance) == 16);
     assert!(core::mem::offset_of!(Host, gather) == 464);
     assert!(size(|host: &Host| &host.gather) == 16);
-    assert!(core::mem::offset_of!(Host, bounds_reduce) == 480);
-    assert!(size(|host: &Host| &host.bounds_reduce) == 16);
-    assert!(core::mem::offset_of!(Host, overlap_count) == 496);
+    assert!(core::mem::offset_of!(Host, overlap_count) == 480);
     assert!(size(|host: &Host| &host.overlap_count) == 16);
-    assert!(core::mem::offset_of!(Host, offsets_scan) == 512);
+    assert!(core::mem::offset_of!(Host, offsets_scan) == 496);
     assert!(size(|host: &Host| &host.offsets_scan) == 16);
-    assert!(core::mem::offset_of!(Host, ray_keys) == 528);
+    assert!(core::mem::offset_of!(Host, ray_keys) == 512);
     assert!(size(|host: &Host| &host.ray_keys) == 16);
 };
 const _: () = {
@@ -860,11 +847,13 @@ const _: () = {
     assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, state) == 24);
     assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, vertex_count) == 32);
+    assert!(core::mem::offset_of!(Host, partials) == 32);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, vertex_count) == 40);
     assert!(size(|host: &Host| &host.vertex_count) == 4);
-    assert!(core::mem::offset_of!(Host, triangle_count) == 36);
+    assert!(core::mem::offset_of!(Host, triangle_count) == 44);
     assert!(size(|host: &Host| &host.triangle_count) == 4);
-    assert!(size_of::<Host>() == 40);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use crate::push::GatherRecords as Host;
@@ -876,9 +865,11 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, triangles) == 24);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, record_count) == 32);
+    assert!(core::mem::offset_of!(Host, partials) == 32);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, record_count) == 40);
     assert!(size(|host: &Host| &host.record_count) == 4);
-    assert!(size_of::<Host>() == 40);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use gridwalk_core::GeometryRecord as Host;

@@ -280,25 +280,23 @@ fn scan(plan: &mut Plan, which: u32, values: Buffer, groups: Dispatch, spine: Di
 
 /// Workgroups of the steps that run over all triangles.
 struct TriangleGroups {
-    bounds_reduce: Dispatch,
     overlap_count: Dispatch,
     offsets_scan: Dispatch,
 }
 
-/// Triangles into one array, in input coordinates; and how many workgroups they make.
+/// Triangles into one array, in input coordinates, with the boxes of its tiles; and how many workgroups later steps take for them.
 fn gather(plan: &mut Plan, capacity: &Capacity, source: Source, shape: &Shape) -> TriangleGroups {
     use Buffer::*;
-    let (state, triangles) = (State.token(), Triangles.token());
+    let (state, triangles, partials) = (State.token(), Triangles.token(), BoundsPartials.token());
     match source {
         Source::Mesh { triangle_count, vertex_count } => {
-            let push =
-                push::Gather { positions: Positions.token(), indices: Indices.token(), triangles, state, vertex_count, triangle_count };
-            // The state is begun even without a triangle.
-            plan.step(Step::new(&GATHER, map_groups(triangle_count.max(1), shape), push));
+            let (positions, indices) = (Positions.token(), Indices.token());
+            let push = push::Gather { positions, indices, triangles, state, partials, vertex_count, triangle_count };
+            // One tile even without a triangle: the state is begun, and the scene has a box.
+            plan.step(Step::new(&GATHER, Dispatch::Direct(split_workgroups(shape.bounds_tiles(triangle_count))), push));
             plan.barrier(Barrier::Shader);
             let groups = |count: u32, size: u32| Dispatch::Direct(split_workgroups(count.div_ceil(size)));
             TriangleGroups {
-                bounds_reduce: Dispatch::Direct(split_workgroups(shape.bounds_tiles(triangle_count))),
                 overlap_count: map_groups(triangle_count + 1, shape),
                 offsets_scan: groups(triangle_count + 1, shape.scan_tile()),
             }
@@ -310,11 +308,10 @@ fn gather(plan: &mut Plan, capacity: &Capacity, source: Source, shape: &Shape) -
             let push = push::GeometryScan { records, firsts, state, arguments, record_count, triangle_capacity: capacity.triangles };
             plan.step(Step::new(&GEOMETRY_SCAN, Dispatch::Direct([1, 1, 1]), push));
             plan.barrier(Barrier::ShaderAndIndirect);
-            let push = push::GatherRecords { records, firsts, state, triangles, record_count, padding: 0 };
+            let push = push::GatherRecords { records, firsts, state, triangles, partials, record_count, padding: 0 };
             plan.step(Step::new(&GATHER_RECORDS, argument(offset_of!(DispatchArguments, gather)), push));
             plan.barrier(Barrier::Shader);
             TriangleGroups {
-                bounds_reduce: argument(offset_of!(DispatchArguments, bounds_reduce)),
                 overlap_count: argument(offset_of!(DispatchArguments, overlap_count)),
                 offsets_scan: argument(offset_of!(DispatchArguments, offsets_scan)),
             }
@@ -348,12 +345,6 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     let mut plan = Plan::new();
 
     let groups = gather(&mut plan, capacity, inputs.source, shape);
-    plan.step(Step::new(
-        &BOUNDS_REDUCE,
-        groups.bounds_reduce,
-        push::BoundsReduce { state, triangles: Triangles.token(), partials: BoundsPartials.token() },
-    ));
-    plan.barrier(Barrier::Shader);
     plan.step(Step::new(
         &BOUNDS_SPINE,
         Dispatch::Direct([1, 1, 1]),

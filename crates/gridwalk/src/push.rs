@@ -3,15 +3,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Of kernel `bounds_reduce`.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct BoundsReduce {
-    pub(crate) state: u64,
-    pub(crate) triangles: u64,
-    pub(crate) partials: u64,
-}
-
 /// Of kernel `bounds_spine`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -314,6 +305,7 @@ pub(crate) struct Gather {
     pub(crate) indices: u64,
     pub(crate) triangles: u64,
     pub(crate) state: u64,
+    pub(crate) partials: u64,
     pub(crate) vertex_count: u32,
     pub(crate) triangle_count: u32,
 }
@@ -326,6 +318,7 @@ pub(crate) struct GatherRecords {
     pub(crate) firsts: u64,
     pub(crate) state: u64,
     pub(crate) triangles: u64,
+    pub(crate) partials: u64,
     pub(crate) record_count: u32,
     pub(crate) padding: u32,
 }

@@ -1,9 +1,8 @@
 use bytemuck::Zeroable;
-use gridwalk::kernels::{BOUNDS_REDUCE, BOUNDS_SPINE};
+use gridwalk::kernels::{BOUNDS_SPINE, GATHER};
 use gridwalk::split_workgroups;
-use gridwalk_core::gather::gathered_state;
-use gridwalk_core::layout::Bounds;
-use gridwalk_core::twin::bounds_reduce::bounds_reduce;
+use gridwalk_core::gather::tile_bounds;
+use gridwalk_core::layout::{Bounds, BuildState};
 use gridwalk_core::twin::bounds_spine::bounds_spine;
 use gridwalk_tests::gpu::{Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
@@ -14,17 +13,18 @@ fn check(gpu: &Gpu, mesh: &Mesh, what: &str) {
     let shape = gpu.tracer.shape();
     let triangles = mesh.indices.len() as u32;
     let tiles = shape.bounds_tiles(triangles);
-    let words = gathered(mesh);
-    let state = gpu.upload("state", &[gathered_state(triangles, triangles)]);
-    let device_triangles = gpu.upload("triangles", &words);
+    let positions = gpu.upload("positions", &mesh.positions);
+    let indices = gpu.upload("indices", &mesh.indices);
+    let device_triangles = gpu.guarded("triangles", 48 * u64::from(triangles.max(1)));
+    let state = gpu.guarded("state", size_of::<BuildState>() as u64);
     let partials = gpu.guarded("partials", 32 * u64::from(tiles));
     let scene = gpu.guarded("scene", 32);
-    gpu.launch(&BOUNDS_REDUCE, 0, &[&state, &device_triangles, &partials], &[], split_workgroups(tiles));
+    let memory = [&positions, &indices, &device_triangles, &state, &partials];
+    gpu.launch(&GATHER, 0, &memory, &[mesh.positions.len() as u32, triangles], split_workgroups(tiles));
     gpu.launch(&BOUNDS_SPINE, 0, &[&state, &partials, &scene], &[], [1, 1, 1]);
 
     let mut expected = vec![Bounds::zeroed(); tiles as usize];
-    let groups = split_workgroups(tiles);
-    bounds_reduce(&shape, groups, triangles, &words, &mut expected);
+    tile_bounds(&shape, &gathered(mesh), &mut expected);
     assert_same(&format!("{what}: partials"), &partials.read::<Bounds>(0, tiles as usize), &expected);
     let mut whole = Bounds::EMPTY;
     bounds_spine(&expected, &mut whole, tiles);

@@ -1,9 +1,10 @@
+use bytemuck::Zeroable;
 use gridwalk::GeometryRecord;
 use gridwalk::ash::vk::DeviceAddress;
 use gridwalk::kernels::{GATHER, GATHER_RECORDS, GEOMETRY_SCAN};
 use gridwalk::{MAX_GEOMETRIES, Shape, split_workgroups};
 use gridwalk_core::geometry::*;
-use gridwalk_core::layout::{BuildState, DispatchArguments, OVERFLOW_TRIANGLES};
+use gridwalk_core::layout::{Bounds, BuildState, DispatchArguments, OVERFLOW_TRIANGLES};
 use gridwalk_core::twin::gather::gather;
 use gridwalk_core::twin::gather_records::gather_records;
 use gridwalk_core::twin::geometry_scan::geometry_scan;
@@ -17,8 +18,8 @@ use super::{TINY, assert_same, devices, many_groups, sizes, untouched};
 fn gather_of_every_size() {
     for gpu in devices() {
         let shape = gpu.tracer.shape();
-        let many = if shape == TINY { many_groups(TINY.map_size).to_vec() } else { Vec::new() };
-        for size in sizes(shape.map_size).into_iter().chain(many) {
+        let many = if shape == TINY { many_groups(TINY.bounds_tile()).to_vec() } else { Vec::new() };
+        for size in sizes(shape.bounds_tile()).into_iter().chain(many) {
             let mut mesh = soup(size as usize, 0.1, u64::from(size));
             spoil(&mut mesh, 5, u64::from(size));
             let vertices = mesh.positions.len() as u32;
@@ -26,15 +27,19 @@ fn gather_of_every_size() {
             let indices = gpu.upload("indices", &mesh.indices);
             let triangles = gpu.guarded("triangles", 48 * u64::from(size.max(1)));
             let state = gpu.guarded("state", size_of::<BuildState>() as u64);
-            let groups = split_workgroups(size.max(1).div_ceil(shape.map_size));
-            gpu.launch(&GATHER, 0, &[&positions, &indices, &triangles, &state], &[vertices, size], groups);
+            let tiles = shape.bounds_tiles(size);
+            let partials = gpu.guarded("partials", 32 * u64::from(tiles));
+            let groups = split_workgroups(tiles);
+            gpu.launch(&GATHER, 0, &[&positions, &indices, &triangles, &state, &partials], &[vertices, size], groups);
             let mut expected = vec![[0.0; 4]; 3 * size as usize];
             let mut expected_state = BuildState::default();
             let (positions, indices) = (bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices));
-            gather(&shape, groups, positions, indices, &mut expected, &mut expected_state, vertices, size);
+            let mut boxes = vec![Bounds::zeroed(); tiles as usize];
+            gather(&shape, groups, positions, indices, &mut expected, &mut expected_state, &mut boxes, vertices, size);
             let what = format!("{size} triangles, {shape:?}");
             assert_same(&what, &triangles.read::<u32>(0, 12 * size as usize), bytemuck::cast_slice(&expected));
             assert_same(&what, &state.read::<BuildState>(0, 1), &[expected_state]);
+            assert_same(&what, &partials.read::<Bounds>(0, boxes.len()), &boxes);
         }
     }
 }
@@ -148,11 +153,15 @@ fn records_of_every_kind() {
                 let device_firsts = gpu.upload("firsts", &firsts);
                 let device_state = gpu.upload("state", &[state]);
                 let triangles = gpu.guarded("triangles", 48 * u64::from(capacity.max(1)));
-                let groups = split_workgroups(state.triangle_count.div_ceil(shape.map_size));
-                let memory = [&device_records, &device_firsts, &device_state, &triangles];
+                let tiles = shape.bounds_tiles(state.triangle_count);
+                let partials = gpu.guarded("partials", 32 * u64::from(tiles));
+                let groups = split_workgroups(tiles);
+                let memory = [&device_records, &device_firsts, &device_state, &triangles, &partials];
                 gpu.launch(&GATHER_RECORDS, 0, &memory, &[records.len() as u32], groups);
                 let mut expected: Vec<[f32; 4]> = bytemuck::cast_slice(&untouched(12 * capacity as usize)).to_vec();
-                gather_records(&shape, groups, &pool.addressed(), &records, &firsts, state.triangle_count, &mut expected);
+                let mut boxes = vec![Bounds::zeroed(); tiles as usize];
+                gather_records(&shape, groups, &pool.addressed(), &records, &firsts, state.triangle_count, &mut expected, &mut boxes);
+                assert_same(&what, &partials.read::<Bounds>(0, boxes.len()), &boxes);
                 let found: Vec<[u32; 4]> = triangles.read(0, expected.len());
                 // A device may take denormals for zero, of either sign.
                 let flush = |x: u32| if x & 0x7F80_0000 == 0 { 0 } else { x };

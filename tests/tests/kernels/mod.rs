@@ -88,9 +88,10 @@ pub fn gathered(mesh: &Mesh) -> Vec<[f32; 4]> {
     let count = mesh.indices.len() as u32;
     let mut triangles = vec![[0.0; 4]; 3 * count as usize];
     let (positions, indices) = (bytemuck::cast_slice(&mesh.positions), bytemuck::cast_slice(&mesh.indices));
-    let groups = gridwalk::split_workgroups(count.div_ceil(Shape::GPU.map_size));
+    let tiles = Shape::GPU.bounds_tiles(count);
+    let (groups, mut partials) = (gridwalk::split_workgroups(tiles), vec![Bounds::EMPTY; tiles as usize]);
     let vertices = mesh.positions.len() as u32;
-    gather(&Shape::GPU, groups, positions, indices, &mut triangles, &mut BuildState::default(), vertices, count);
+    gather(&Shape::GPU, groups, positions, indices, &mut triangles, &mut BuildState::default(), &mut partials, vertices, count);
     triangles
 }
 

@@ -147,7 +147,7 @@ fn hazards_are_named() {
     let (_, plan) = &builds()[0];
     let steps: Vec<Item> = plan.items().iter().copied().filter(|item| matches!(item, Item::Step(_))).collect();
     let hazard = find_hazard_in(&steps).unwrap();
-    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "bounds_reduce", HazardKind::ReadAfterWrite));
+    assert_eq!((hazard.item, hazard.kernel, hazard.kind), (1, "bounds_spine", HazardKind::ReadAfterWrite));
     // The same step twice writes twice.
     let hazard = find_hazard_in(&[steps[0], steps[0]]).unwrap();
     assert_eq!((hazard.item, hazard.kind), (1, HazardKind::WriteAfterWrite));

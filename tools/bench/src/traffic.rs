@@ -39,7 +39,6 @@ impl Size {
         let later = u64::from(launches).saturating_sub(1);
         Some(match kernel {
             "gather" => triangles * (INDICES + VERTICES + TRIANGLE),
-            "bounds_reduce" => triangles * TRIANGLE,
             "clear_cells" => cells * CELL,
             "overlap_count" => triangles * (2 * TRIANGLE + 2 * WORD),
             "overlap_emit" => triangles * (TRIANGLE + 2 * WORD) + pairs * 2 * WORD,

@@ -1,6 +1,6 @@
 //! Twin of kernel `bounds_spine`.
 
-use super::bounds_reduce::unite;
+use crate::gather::unite;
 use crate::layout::Bounds;
 
 /// The union of the boxes of all tiles: the scene box.

@@ -1,12 +1,13 @@
 //! Twin of kernel `gather_records`.
 
 use crate::dispatch::workgroups;
-use crate::gather::{TriangleWords, triangle_words};
+use crate::gather::{TriangleWords, tile_bounds, triangle_words};
 use crate::geometry::{AddressedMemory, FLAG_FLIP_FACING, FLAG_TWO_SIDED, GeometryRecord, position_of, vertices_of};
-use crate::layout::{TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED};
+use crate::layout::{Bounds, TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED};
 use crate::shape::Shape;
 
-/// Writes the triangles of all geometries.
+/// Writes the triangles of all geometries, and the box of each tile of them.
+#[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn gather_records(
     shape: &Shape,
     groups: [u32; 3],
@@ -15,9 +16,10 @@ pub fn gather_records(
     firsts: &[u32],
     triangle_count: u32,
     triangles: &mut [[f32; 4]],
+    partials: &mut [Bounds],
 ) {
-    let invocations = workgroups(groups).flat_map(|group| group * shape.map_size..(group + 1) * shape.map_size);
-    for triangle in invocations.filter(|triangle| *triangle < triangle_count) {
+    let tiles = workgroups(groups).flat_map(|tile| tile * shape.bounds_tile()..(tile + 1) * shape.bounds_tile());
+    for triangle in tiles.filter(|triangle| *triangle < triangle_count) {
         let index = firsts[..records.len()].partition_point(|first| *first <= triangle) - 1;
         let record = &records[index];
         let local = triangle - firsts[index];
@@ -29,4 +31,5 @@ pub fn gather_records(
         let words = TriangleWords { flags, id: record.id, mask: record.mask };
         triangles[3 * triangle as usize..][..3].copy_from_slice(&triangle_words(found, words));
     }
+    tile_bounds(shape, &triangles[..3 * triangle_count as usize], partials);
 }

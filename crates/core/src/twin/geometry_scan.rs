@@ -23,8 +23,7 @@ pub fn geometry_scan(
     });
     let count = total.min(triangle_capacity);
     *state = gathered_state(count, total);
-    arguments.gather = four(split_workgroups(count, shape.map_size));
-    arguments.bounds_reduce = four(split_workgroups(count.max(1), shape.bounds_tile()));
+    arguments.gather = four(split_workgroups(count.max(1), shape.bounds_tile()));
     arguments.overlap_count = four(split_workgroups(count + 1, shape.map_size));
     arguments.offsets_scan = four(split_workgroups(count + 1, shape.scan_tile()));
 }

@@ -2,7 +2,6 @@
 
 use bytemuck::{Pod, Zeroable, bytes_of};
 
-use super::bounds_reduce::bounds_reduce;
 use super::bounds_spine::bounds_spine;
 use super::brick_distance_x::brick_distance_x;
 use super::brick_distance_y::brick_distance_y;
@@ -148,18 +147,17 @@ impl Memory {
         let BuildState { triangle_count, pair_count, kept_count, .. } = self.state;
         match step.kernel {
             "gather" => {
-                let (triangles, state) = (&mut self.triangles, &mut self.state);
-                gather(shape, groups, &self.positions, &self.indices, triangles, state, words[0], words[1]);
+                let (triangles, state, partials) = (&mut self.triangles, &mut self.state, &mut self.bounds_partials);
+                gather(shape, groups, &self.positions, &self.indices, triangles, state, partials, words[0], words[1]);
             }
             "geometry_scan" => {
                 let (state, arguments) = (&mut self.state, &mut self.arguments);
                 geometry_scan(shape, &self.addressed, &self.records, &mut self.offsets, state, arguments, words[1]);
             }
             "gather_records" => {
-                let (firsts, triangles) = (&self.offsets, &mut self.triangles);
-                gather_records(shape, groups, &self.addressed, &self.records, firsts, triangle_count, triangles);
+                let (firsts, triangles, partials) = (&self.offsets, &mut self.triangles, &mut self.bounds_partials);
+                gather_records(shape, groups, &self.addressed, &self.records, firsts, triangle_count, triangles, partials);
             }
-            "bounds_reduce" => bounds_reduce(shape, groups, triangle_count, &self.triangles, &mut self.bounds_partials),
             "bounds_spine" => bounds_spine(&self.bounds_partials, &mut self.scene_bounds, shape.bounds_tiles(triangle_count)),
             "configure" => {
                 let info = Configure {

@@ -3,19 +3,20 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// Triangles of all geometries, one an invocation.
+// Triangles of all geometries, and the box of each tile of them, as kernel gather has them.
 
+#include "shared/bounds.glsl"
 #include "shared/gather.glsl"
 #include "shared/geometry.glsl"
 
-layout(local_size_x_id = 0) in;
-layout(local_size_x = 64) in;
+layout(constant_id = 1) const uint TRIANGLES_EACH = 8;
 
 layout(push_constant, std430) uniform GatherRecords {
     RecordsIn records;
     UintsIn firsts;
     StateIn state;
     TriangleWordsOut triangles;
+    BoundsOut partials;
     uint record_count;
 };
 
@@ -34,11 +35,7 @@ uint owner(uint triangle) {
     return low;
 }
 
-void main() {
-    uint triangle = invocation_index();
-    if (triangle >= state.state.triangle_count) {
-        return;
-    }
+void gather(uint triangle, inout Bounds bounds) {
     uint index = owner(triangle);
     GeometryRecord record = records.record[index];
     uint local = triangle - firsts.word[index];
@@ -54,5 +51,22 @@ void main() {
     }
     uint flags = local | ((record.flags & FLAG_FLIP_FACING) != 0u ? TRIANGLE_FLIPPED : 0u)
         | ((record.flags & FLAG_TWO_SIDED) != 0u ? TRIANGLE_TWO_SIDED : 0u);
-    write_triangle(triangles, triangle, v0, v1, v2, is_whole, TriangleWords(flags, record.id, record.mask));
+    write_triangle(triangles, triangle, v0, v1, v2, is_whole, TriangleWords(flags, record.id, record.mask), bounds);
+}
+
+void main() {
+    uint triangle_count = state.state.triangle_count;
+    uint tile = workgroup_index();
+    uint first = tile * gl_WorkGroupSize.x * TRIANGLES_EACH;
+    Bounds bounds = empty_bounds();
+    for (uint i = 0u; i < TRIANGLES_EACH; ++i) {
+        uint triangle = first + i * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+        if (triangle < triangle_count) {
+            gather(triangle, bounds);
+        }
+    }
+    bounds = workgroup_bounds(bounds);
+    if (gl_LocalInvocationID.x == 0u && first < max(triangle_count, 1u)) {
+        partials.bounds[tile] = bounds;
+    }
 }
