@@ -74,8 +74,8 @@ fn ray_keys_of_all_kinds_of_rays() {
         t_max: 10.0,
     };
     let (low, high) = (key(&at(0.01, [1.0, 0.5, 0.2])), key(&at(0.99, [1.0, 0.5, 0.2])));
-    assert_eq!(low >> 5, 0, "the first cell of the box");
+    assert_eq!(low >> 6, 0, "the first cell of the box");
     assert!(high > low, "{high:#x} lies at the other end");
     assert_eq!(low, key(&at(0.011, [1.0, 0.4, 0.3])));
-    assert_eq!(low ^ key(&at(0.01, [1.0, 0.5, -0.2])), 4, "one sign is one bit");
+    assert_eq!(low ^ key(&at(0.01, [1.0, 0.5, -0.2])), 32, "one sign is one bit");
 }
