@@ -1,7 +1,7 @@
 // A pass of the least-significant-digit radix sort over tiles of pairs. Each invocation counts a run of consecutive keys in counters of its
 // own: no atomic and no subgroup operation, and the order of equal digits is kept. A tile is the runs of a workgroup, whose counters are
-// columns in shared memory; or a run alone, whose counters are a private array, which drivers that run on a CPU reach by vector
-// instructions, as all memory but the shared.
+// columns in shared memory; or a run alone, whose counters are a private array: a driver that runs on a CPU reaches that with half the
+// instructions, and nothing has to be exchanged.
 #ifndef SORT_GLSL
 #define SORT_GLSL
 

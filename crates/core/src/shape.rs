@@ -49,7 +49,7 @@ impl Shape {
         map_size: 64,
         scan_size: 256,
         scan_items: 16,
-        reduce_items: 8,
+        reduce_items: 2,
         reduce_bricks: 1,
         sort_bits: 4,
         sort_size: 256,
