@@ -196,7 +196,7 @@ fn main() -> Result<()> {
 
     // Pairs (cell, triangle) cannot be known beforehand. Four a triangle are a good guess; this one is too low, to show what then happens.
     let cells = triangle_count * BuildOptions::DEFAULT_DENSITY as u32;
-    let mut capacity = Capacity { triangles: triangle_count, cells, pairs: triangle_count };
+    let mut capacity = Capacity { triangles: triangle_count, cells, pairs: triangle_count, leaf_cells: triangle_count / 2 };
     let mut sizes = tracer.build_sizes(&capacity)?;
     let mut scratch = memory.take(sizes.scratch.size)?;
 

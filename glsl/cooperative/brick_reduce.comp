@@ -3,7 +3,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// Which cells of each brick are in use, for the walk; and cells in use and longest list of a tile of bricks, for the report.
+// Which cells of each brick are in use, for the walk; and what a tile of bricks adds to the report and gives the second level to do.
 
 #include "shared/occupancy.glsl"
 
@@ -22,37 +22,45 @@ void main() {
     uvec3 resolution = grid.header.resolution;
     uvec3 bricks_along = brick_resolution(resolution);
     uint brick_count = bricks_along.x * bricks_along.y * bricks_along.z;
+    uint most = grid.header.fine_shift;
     uint tile = workgroup_index();
     uint first = tile * gl_WorkGroupSize.x * BRICKS_EACH;
-    uvec2 occupancy = uvec2(0u);
+    TileOccupancy occupancy = NOTHING;
     for (uint i = 0u; i < BRICKS_EACH; ++i) {
         uint index = first + i * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
         if (index < brick_count) {
-            uint slice = index / bricks_along.x;
-            uvec3 low = BRICK_SIZE * uvec3(index - slice * bricks_along.x, slice % bricks_along.y, slice / bricks_along.y);
-            uvec3 size = min(uvec3(BRICK_SIZE), resolution - low);
+            BrickCells brick = brick_cells(index, resolution);
             uvec2 mask = uvec2(0u);
-            for (uint z = 0u; z < size.z; ++z) {
-                for (uint y = 0u; y < size.y; ++y) {
-                    uint row = cell_id(low + uvec3(0u, y, z), resolution);
+            for (uint z = 0u; z < brick.size.z; ++z) {
+                for (uint y = 0u; y < brick.size.y; ++y) {
+                    uint row = cell_id(brick.low + uvec3(0u, y, z), resolution);
                     uint bits = 0u;
-                    for (uint x = 0u; x < size.x; ++x) {
+                    for (uint x = 0u; x < brick.size.x; ++x) {
                         uvec2 range = cells.range[row + x];
+                        uint length = range.y - range.x;
                         bits |= uint(range.y != 0u) << x;
-                        occupancy.y = max(occupancy.y, range.y - range.x);
+                        occupancy.longest_list = max(occupancy.longest_list, length);
+                        uint level = leaf_level(length, LEAST_SPLIT, most);
+                        if (level != 0u) {
+                            for (uint i = 0u; i < (length >= LEAST_SPLIT_OF_LONG ? 2u : 1u); ++i) {
+                                occupancy.split_cells[i] += 1u;
+                                occupancy.split_references[i] += length;
+                                occupancy.leaf_cells[i] = saturating_add(occupancy.leaf_cells[i], leaf_count_of(level));
+                            }
+                        }
                     }
                     uint shift = BRICK_SIZE * y + 16u * (z & 1u);
                     mask.x |= z < 2u ? bits << shift : 0u;
                     mask.y |= z < 2u ? 0u : bits << shift;
                 }
             }
-            occupancy.x += uint(bitCount(mask.x) + bitCount(mask.y));
+            occupancy.cells_in_use += uint(bitCount(mask.x) + bitCount(mask.y));
             // The distance is measured by the next steps.
             bricks.brick[index] = Brick(mask, 0u, 0u);
         }
     }
     occupancy = workgroup_occupancy(occupancy);
     if (gl_LocalInvocationID.x == 0u && first < brick_count) {
-        partials.occupancy[tile] = occupancy;
+        partials.tile[tile] = occupancy;
     }
 }

@@ -3,28 +3,83 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// One workgroup completes the report.
+// One workgroup completes the report of the first level, scans what its tiles give the second to do, and begins the state of that.
 
 #include "shared/occupancy.glsl"
 
 layout(constant_id = 1) const uint BRICK_TILE = 1024;
+layout(constant_id = 2) const uint MAP_SIZE = 64;
+layout(constant_id = 3) const uint SCAN_TILE = 4096;
+layout(constant_id = 4) const uint SORT_BITS = 10;
 
 layout(push_constant, std430) uniform ReportSpine {
     GridwalkGrid grid;
-    OccupancyIn partials;
+    StateIn state;
+    OccupancyInOut partials;
+    StateOut leaf_state;
+    LeafArgumentsOut arguments;
     ReportOut report;
+    uint leaf_capacity;
 };
 
 void main() {
     uvec3 bricks_along = brick_resolution(grid.header.resolution);
     uint count = (bricks_along.x * bricks_along.y * bricks_along.z + BRICK_TILE - 1u) / BRICK_TILE;
-    uvec2 occupancy = uvec2(0u);
-    for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
-        occupancy = unite(occupancy, partials.occupancy[i]);
+    TileOccupancy sum = NOTHING;
+    for (uint tile = gl_LocalInvocationID.x; tile < count; tile += gl_WorkGroupSize.x) {
+        sum = unite(sum, partials.tile[tile]);
     }
-    occupancy = workgroup_occupancy(occupancy);
+    sum = workgroup_occupancy(sum);
+    bool long_lists = state.state.kept_count / LONG_LISTS >= sum.cells_in_use;
+    uint which = uint(long_lists);
+    uint cells_before = 0u;
+    uint references_before = 0u;
+    uint leaves_before = 0u;
+    for (uint base = 0u; base < count; base += gl_WorkGroupSize.x) {
+        uint tile = base + gl_LocalInvocationID.x;
+        uint cells = 0u;
+        uint references = 0u;
+        uint leaves = 0u;
+        if (tile < count) {
+            cells = partials.tile[tile].split_cells[which];
+            references = partials.tile[tile].split_references[which];
+            leaves = partials.tile[tile].leaf_cells[which];
+        }
+        uint total_cells;
+        uint total_references;
+        uint total_leaves;
+        uint cells_in_row = workgroup_exclusive_scan(cells, total_cells);
+        uint references_in_row = workgroup_exclusive_scan(references, total_references);
+        uint leaves_in_row = workgroup_exclusive_scan(leaves, total_leaves);
+        if (tile < count) {
+            partials.tile[tile].cells_before = cells_before + cells_in_row;
+            partials.tile[tile].references_before = references_before + references_in_row;
+            partials.tile[tile].leaves_before = saturating_add(leaves_before, leaves_in_row);
+        }
+        cells_before += total_cells;
+        references_before += total_references;
+        leaves_before = saturating_add(leaves_before, total_leaves);
+    }
     if (gl_LocalInvocationID.x == 0u) {
-        report.report.cells_in_use = occupancy.x;
-        report.report.longest_list = occupancy.y;
+        report.report.cells_in_use = sum.cells_in_use;
+        report.report.longest_list = sum.longest_list;
+        report.report.split_cells = cells_before;
+        report.report.leaf_cells = leaves_before;
+        report.report.leaf_pairs = 0u;
+        report.report.overflow = state.state.overflow | (leaves_before > leaf_capacity ? OVERFLOW_LEAVES : 0u);
+
+        uint leaf_cells = min(leaves_before, leaf_capacity);
+        uint key_bits = leaf_cells <= 1u ? 0u : uint(findMSB(leaf_cells - 1u)) + 1u;
+        uint pass_count = (key_bits + SORT_BITS - 1u) / SORT_BITS;
+        uint digit_bits = pass_count == 0u ? 0u : (key_bits + pass_count - 1u) / pass_count;
+        leaf_state.state = BuildState(0u, references_before + 1u, 0u, 0u, key_bits, pass_count, 0u, 0u, 0u, digit_bits, 0u, 0u, SATURATED,
+                                      state.state.kept_count, grid.header.cell_count, cells_before,
+                                      long_lists ? LEAST_SPLIT_OF_LONG : LEAST_SPLIT);
+        bool any_split = cells_before != 0u;
+        uint counts = references_before + 1u;
+        arguments.arguments.split_cells = any_split ? uvec4(split_workgroups(count, 1u), 0u) : uvec4(0u);
+        arguments.arguments.count = any_split ? uvec4(split_workgroups(counts, MAP_SIZE), 0u) : uvec4(0u);
+        arguments.arguments.offsets_scan = any_split ? uvec4(split_workgroups(counts, SCAN_TILE), 0u) : uvec4(0u);
+        arguments.arguments.offsets_spine = any_split ? uvec4(1u, 1u, 1u, 0u) : uvec4(0u);
     }
 }

@@ -31,8 +31,9 @@ void histogram_alone() {
     for (uint digit = 0u; digit < 1u << bits; ++digit) {
         count[digit] = 0u;
     }
-    uint first = tile * KEYS_EACH;
-    uint last = min(first + KEYS_EACH, pair_count);
+    uint begin = state.state.first_pair;
+    uint first = begin + tile * KEYS_EACH;
+    uint last = min(first + KEYS_EACH, begin + pair_count);
     for (uint i = first; i < last; ++i) {
         uint key = keys.word[i];
         count[digit_of(key, pass, bits)] += uint(key != sentinel);
@@ -52,8 +53,9 @@ void histogram_together() {
     if (tile >= tile_count) {
         return;
     }
+    uint begin = state.state.first_pair;
     uint first = tile * tile_size + gl_LocalInvocationID.x * KEYS_EACH;
-    count_run(keys_of(pass), pass, bits, sentinel, first, min(first + KEYS_EACH, pair_count));
+    count_run(keys_of(pass), pass, bits, sentinel, begin + first, begin + min(first + KEYS_EACH, pair_count));
     barrier();
     for (uint digit = gl_LocalInvocationID.x; digit < 1u << bits; digit += gl_WorkGroupSize.x) {
         uint sum = 0u;

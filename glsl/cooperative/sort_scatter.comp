@@ -40,12 +40,13 @@ void scatter_alone() {
         return;
     }
     Buffers buffers = buffers_of(pass);
+    uint begin = state.state.first_pair;
     uint next[1u << SORT_BITS]; // where the next key of a digit goes
     for (uint digit = 0u; digit < 1u << bits; ++digit) {
-        next[digit] = table.word[digit * tile_count + tile];
+        next[digit] = begin + table.word[digit * tile_count + tile];
     }
-    uint first = tile * KEYS_EACH;
-    uint last = min(first + KEYS_EACH, pair_count);
+    uint first = begin + tile * KEYS_EACH;
+    uint last = min(first + KEYS_EACH, begin + pair_count);
     for (uint i = first; i < last; ++i) {
         uint key = buffers.keys.word[i];
         uint value = buffers.values.word[i];
@@ -70,12 +71,13 @@ void scatter_together() {
         return;
     }
     Buffers buffers = buffers_of(pass);
-    uint first = tile * tile_size + gl_LocalInvocationID.x * KEYS_EACH;
-    uint last = min(first + KEYS_EACH, pair_count);
+    uint begin = state.state.first_pair;
+    uint first = begin + tile * tile_size + gl_LocalInvocationID.x * KEYS_EACH;
+    uint last = min(first + KEYS_EACH, begin + pair_count);
     count_run(buffers.keys, pass, bits, sentinel, first, last);
     barrier();
     for (uint digit = gl_LocalInvocationID.x; digit < 1u << bits; digit += gl_WorkGroupSize.x) {
-        uint next = table.word[digit * tile_count + tile];
+        uint next = begin + table.word[digit * tile_count + tile];
         for (uint column = 0u; column < gl_WorkGroupSize.x; ++column) {
             uint i = digit * gl_WorkGroupSize.x + column;
             uint count = counter[i];

@@ -9,6 +9,7 @@
 #include "shared/bounds_types.glsl"
 #include "shared/build.glsl"
 #include "shared/intersect.glsl"
+#include "shared/split.glsl"
 
 layout(local_size_x = 1) in;
 
@@ -32,6 +33,7 @@ layout(push_constant, std430) uniform Configure {
     uint fixed_x; // 0: by density
     uint fixed_y;
     uint fixed_z;
+    uint levels; // 1: flat, 2: cells with many triangles are split
     uint exact; // 1: cells that a triangle's large box alone overlaps get the sentinel key
 };
 
@@ -159,7 +161,18 @@ void main() {
     header.triangles = uvec2(triangles);
     header.bricks = uvec2(bricks);
     header.middle = middle;
-    header.reserved = 0u;
+    // Leaf cells are no smaller than cells may be.
+    float least = min(header.cell_size.x, min(header.cell_size.y, header.cell_size.z));
+    uint fine_shift = 0u;
+    for (uint i = 1u; i <= MAX_LEVEL && levels > 1u; ++i) {
+        fine_shift = least >= float(1u << i) * (MIN_CELL_IN_PADS * pad) ? i : fine_shift;
+    }
+    GridHeader fine = refined(header, fine_shift);
+    header.fine_shift = fine_shift;
+    header.fine_cell_size = fine.cell_size;
+    header.reserved0 = 0u;
+    header.inverse_fine_cell_size = fine.inverse_cell_size;
+    header.reserved1 = 0u;
     grid.header = header;
 
     uint largest_key = cell_count - 1u;
@@ -191,4 +204,8 @@ void main() {
     report.report.density = used_density;
     report.report.box_max = high;
     report.report.triangle_total = next.triangle_total;
+    report.report.split_cells = 0u;
+    report.report.leaf_cells = 0u;
+    report.report.leaf_pairs = 0u;
+    report.report.reserved = 0u;
 }

@@ -106,7 +106,7 @@ void main() {
     Ray ray = rays.ray[index];
     GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
-    Search search = Search(index, continues ? walks.walk[place].given_up - 1u : 0u, -GRIDWALK_INFINITY, 0u, 0u);
+    Search search = Search(index, continues ? (walks.walk[place].given_up & ((1u << WALK_FINE) - 1u)) - 1u : 0u, -GRIDWALK_INFINITY, 0u, 0u);
     uint rest = GRIDWALK_MISS;
     bool given_up = false;
     bool has_floor = search.found > 0u || resume;
@@ -146,7 +146,7 @@ void main() {
             rest = GRIDWALK_UNFINISHED;
         } else if (given_up) {
             WalkState saved = walk_save(walk, header);
-            saved.given_up = search.found + 1u;
+            saved.given_up += search.found;
             walks.walk[place] = saved;
             state.state.unfinished = 1u;
         }

@@ -37,6 +37,7 @@ void main() {
     state.state.pass_count = passes;
     state.state.digit_bits = digit_bits;
     state.state.table_count = table_count;
+    state.state.first_pair = 0u;
     state.state.sentinel = SATURATED; // no ray's key: none is left behind
     arguments.arguments.ray_keys = uvec4(split_workgroups(rays, MAP_SIZE), 0u);
     arguments.arguments.sort[0] = uvec4(split_workgroups(tiles, SORT_TILES), 0u);

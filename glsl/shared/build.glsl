@@ -23,12 +23,17 @@ struct BuildState {
     uint has_large; // 1: some triangle's box holds more cells than a mask has bits
     uint kept_count; // pairs with a cell: the first pass of the sort leaves the others behind
     uint sentinel; // key of a pair without a cell
-    uint reserved[3];
+    // The second level has a state of its own, with what follows and those of the sort.
+    uint first_pair; // of its pairs, behind those of the first level
+    uint first_cell; // of its cells, likewise
+    uint split_cells; // cells with a record
+    uint least_split; // triangles of the shortest list whose cell is split
 };
 
 const uint OVERFLOW_PAIRS = 1u;
 const uint OVERFLOW_CELLS = 2u;
 const uint OVERFLOW_TRIANGLES = 4u;
+const uint OVERFLOW_LEAVES = 8u;
 
 // Host twin: gridwalk_core::layout::DispatchArguments; each is a VkDispatchIndirectCommand and a word of padding. A pass that is not in
 // use has zero groups.
@@ -49,6 +54,21 @@ struct DispatchArguments {
     uvec4 ray_keys;
 };
 
+// Likewise of the second level. Host twin: gridwalk_core::layout::LeafArguments.
+struct LeafArguments {
+    uvec4 split_cells;
+    uvec4 count;
+    uvec4 offsets_scan;
+    uvec4 offsets_spine;
+    uvec4 emit;
+    uvec4 sort[MAX_PASSES];
+    uvec4 table_scan[MAX_PASSES];
+    uvec4 table_spine[MAX_PASSES];
+    uvec4 cell_ranges;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer LeafArgumentsInOut { LeafArguments arguments; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer LeafArgumentsOut { LeafArguments arguments; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer StateIn { BuildState state; };
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer StateOut { BuildState state; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer StateInOut { BuildState state; };
@@ -74,6 +94,10 @@ struct Report {
     float density;
     vec3 box_max;
     uint triangle_total;
+    uint split_cells;
+    uint leaf_cells;
+    uint leaf_pairs;
+    uint reserved;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer ArgumentsOut { DispatchArguments arguments; };

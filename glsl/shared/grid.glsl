@@ -7,13 +7,17 @@
 
 #include "shared/types.glsl"
 
-// [begin, end) in the references; {0, 0} for an empty cell.
+// [begin, end) in the references; {0, 0} for an empty cell. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
+// level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint triangle[]; };
 // Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
 // triangle's number in its geometry, the geometry's id, and its mask.
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TriangleWordsIn { uvec4 vertex[]; };
+
+const uint CELL_SPLIT = 1u << 31;
+const uint CELL_LEVEL = 7u;
 
 const uint TRIANGLE_DROPPED = 1u << 31;
 const uint TRIANGLE_FLIPPED = 1u << 30; // its front is where its vertices go round clockwise
@@ -50,7 +54,12 @@ struct GridHeader {
     uvec2 triangles;
     uvec2 bricks;
     vec3 middle; // in input coordinates
-    uint reserved;
+    uint fine_shift; // most levels of a split cell; 0: none is split
+    // A walk counts in fine cells, of which each cell has 2^fine_shift along an axis.
+    vec3 fine_cell_size;
+    uint reserved0;
+    vec3 inverse_fine_cell_size;
+    uint reserved1;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };

@@ -1,22 +1,62 @@
-// Numbers of the report that are reduced over all cells.
+// What is reduced over the cells of bricks: numbers of the report, and how much the second level has to do.
 #ifndef OCCUPANCY_GLSL
 #define OCCUPANCY_GLSL
 
-#include "shared/build.glsl"
+#include "shared/scan.glsl"
+#include "shared/split.glsl"
 
-layout(local_size_x_id = 0) in;
-layout(local_size_x = 256) in;
+// Host twin: gridwalk_core::layout::TileOccupancy.
+struct TileOccupancy {
+    uint cells_in_use;
+    uint longest_list;
+    // Of the cells that are split if LEAST_SPLIT is the least list, and if LEAST_SPLIT_OF_LONG is: report_spine decides.
+    uint split_cells[2];
+    uint split_references[2]; // triangles in their lists
+    uint leaf_cells[2];
+    // Of all tiles before; written by report_spine.
+    uint cells_before;
+    uint references_before;
+    uint leaves_before;
+    uint reserved;
+};
 
-// x: cells in use, y: length of the longest list.
-layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer OccupancyIn { uvec2 occupancy[]; };
-layout(buffer_reference, std430, buffer_reference_align = 8) writeonly buffer OccupancyOut { uvec2 occupancy[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer OccupancyInOut { TileOccupancy tile[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer OccupancyIn { TileOccupancy tile[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer OccupancyOut { TileOccupancy tile[]; };
 
-shared uvec2 workgroup_partial[gl_WorkGroupSize.x];
+// The cells of a brick.
+struct BrickCells {
+    uvec3 low;
+    uvec3 size; // below BRICK_SIZE at the grid's upper sides
+};
 
-uvec2 unite(uvec2 a, uvec2 b) { return uvec2(a.x + b.x, max(a.y, b.y)); }
+BrickCells brick_cells(uint index, uvec3 resolution) {
+    uvec3 bricks_along = brick_resolution(resolution);
+    uint slice = index / bricks_along.x;
+    BrickCells cells;
+    cells.low = BRICK_SIZE * uvec3(index - slice * bricks_along.x, slice % bricks_along.y, slice / bricks_along.y);
+    cells.size = min(uvec3(BRICK_SIZE), resolution - cells.low);
+    return cells;
+}
+
+shared TileOccupancy workgroup_partial[gl_WorkGroupSize.x];
+
+const TileOccupancy NOTHING = TileOccupancy(0u, 0u, uint[2](0u, 0u), uint[2](0u, 0u), uint[2](0u, 0u), 0u, 0u, 0u, 0u);
+
+TileOccupancy unite(TileOccupancy a, TileOccupancy b) {
+    TileOccupancy sum = NOTHING;
+    sum.cells_in_use = a.cells_in_use + b.cells_in_use;
+    sum.longest_list = max(a.longest_list, b.longest_list);
+    for (uint i = 0u; i < 2u; ++i) {
+        sum.split_cells[i] = a.split_cells[i] + b.split_cells[i];
+        sum.split_references[i] = a.split_references[i] + b.split_references[i];
+        sum.leaf_cells[i] = saturating_add(a.leaf_cells[i], b.leaf_cells[i]);
+    }
+    return sum;
+}
 
 // Over the workgroup, in all invocations. The workgroup size is a power of two.
-uvec2 workgroup_occupancy(uvec2 mine) {
+TileOccupancy workgroup_occupancy(TileOccupancy mine) {
     uint lane = gl_LocalInvocationID.x;
     workgroup_partial[lane] = mine;
     barrier();

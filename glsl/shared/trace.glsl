@@ -47,13 +47,18 @@ struct Counters {
 };
 
 WalkState walk_save(Walk walk, GridHeader grid) {
-    return WalkState(1u, cell_id(uvec3(walk.cell), grid.resolution), walk.reference, walk.exit, walk.best_s, walk.best_u, walk.best_v, walk.best_triangle);
+    uvec3 cell = uvec3(walk.cell) >> grid.fine_shift;
+    uvec3 inside = uvec3(walk.cell) & ((1u << grid.fine_shift) - 1u);
+    uint fine = inside.x | inside.y << 8u | inside.z << 16u;
+    return WalkState(1u | fine << WALK_FINE, cell_id(cell, grid.resolution), walk.reference, walk.exit, walk.best_s, walk.best_u, walk.best_v, walk.best_triangle);
 }
 
 void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
     uint slice = grid.resolution.x * grid.resolution.y;
     uint in_slice = saved.cell % slice;
-    walk.cell = ivec3(in_slice % grid.resolution.x, in_slice / grid.resolution.x, saved.cell / slice);
+    uvec3 cell = uvec3(in_slice % grid.resolution.x, in_slice / grid.resolution.x, saved.cell / slice);
+    uint fine = saved.given_up >> WALK_FINE;
+    walk.cell = ivec3((cell << grid.fine_shift) + (uvec3(fine, fine >> 8u, fine >> 16u) & 255u));
     walk.exit = saved.exit;
     walk_enter(walk, grid);
     walk.reference = saved.reference;

@@ -39,7 +39,7 @@ uint traced_rays(RayCountIn count, uint max_rays, uint indirect) {
 
 // Where a walk was given up. Host twin: gridwalk_core::layout::WalkState.
 struct WalkState {
-    uint given_up; // 1: the rest is set
+    uint given_up; // not 0: the rest is set; from bit WALK_FINE on the place within the cell
     uint cell;
     uint reference;
     float exit;
@@ -48,6 +48,8 @@ struct WalkState {
     float best_v;
     uint best_triangle;
 };
+
+const uint WALK_FINE = 8u; // eight bits an axis
 
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer WalkStatesInOut { WalkState walk[]; };
 

@@ -614,7 +614,7 @@ static void trace_records(const GridwalkTracer *tracer, const Mesh *torus, const
     record[1].scale[0] = record[1].scale[1] = record[1].scale[2] = 0.5f;
     record[1].transform[1][3] = 1;
 
-    GridwalkCapacity capacity = {ALL, 16 * ALL, 16 * ALL};
+    GridwalkCapacity capacity = {ALL, 16 * ALL, 16 * ALL, ALL};
     GridwalkBuildSizes sizes;
     GridwalkRegionSize trace_size, sort_size;
     check(gridwalk_build_sizes(tracer, &capacity, &sizes), "gridwalk_build_sizes");
@@ -743,7 +743,7 @@ int main(int argc, char **argv) {
     check(gridwalk_tracer_create(&desc, &tracer), "gridwalk_tracer_create");
 
     /* Memory: two grids, which share one scratch. */
-    GridwalkCapacity capacity = {TRIANGLES, 16 * TRIANGLES, 16 * TRIANGLES};
+    GridwalkCapacity capacity = {TRIANGLES, 16 * TRIANGLES, 16 * TRIANGLES, TRIANGLES};
     GridwalkBuildSizes sizes;
     GridwalkRegionSize trace_size;
     check(gridwalk_build_sizes(tracer, &capacity, &sizes), "gridwalk_build_sizes");

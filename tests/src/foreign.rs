@@ -345,7 +345,7 @@ pub struct Placed<'a> {
 impl<'a> Placed<'a> {
     pub fn new(memory: &'a Memory<'a>, tracer: &Tracer, terrain: Terrain) -> Placed<'a> {
         let (triangles, rays) = (terrain.indices.len() as u32, terrain.rays.len() as u32);
-        let capacity = Capacity { triangles, cells: 16 * triangles, pairs: 128 * triangles };
+        let capacity = Capacity { triangles, cells: 16 * triangles, pairs: 128 * triangles, leaf_cells: 0 };
         let sizes = tracer.build_sizes(&capacity).unwrap();
         let geometry = Geometry {
             positions: memory.upload(&terrain.positions),

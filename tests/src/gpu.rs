@@ -34,10 +34,10 @@ impl Mesh {
         self.indices[index].map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Room for the mesh at any density up to 8 or so.
+    /// Room for the mesh at any density up to 8 or so, in a flat grid.
     pub fn capacity(&self) -> Capacity {
         let triangles = self.indices.len() as u32;
-        Capacity { triangles, cells: 16 * triangles + 64, pairs: 16 * triangles + 4096 }
+        Capacity { triangles, cells: 16 * triangles + 64, pairs: 16 * triangles + 4096, leaf_cells: 0 }
     }
 }
 
@@ -137,15 +137,16 @@ impl Built {
         self.grid.read(0, 1)[0]
     }
 
-    /// Begin and end of each cell's list.
+    /// Begin and end of each cell's list, or where a split cell's leaf cells are; and behind the cells the leaf cells.
     pub fn cells(&self) -> Vec<[u32; 2]> {
         let header = self.header();
-        self.grid.read(self.offset(header.cells), header.cell_count as usize)
+        let leaf_cells = if self.info.capacity.leaf_cells > 0 { self.report.leaf_cells.min(self.info.capacity.leaf_cells) } else { 0 };
+        self.grid.read(self.offset(header.cells), (header.cell_count + leaf_cells) as usize)
     }
 
-    /// The lists of all cells, one after another.
+    /// The lists of all cells, one after another; then those of all leaf cells.
     pub fn references(&self) -> Vec<u32> {
-        self.grid.read(self.offset(self.header().references), self.report.pairs as usize)
+        self.grid.read(self.offset(self.header().references), (self.report.pairs + self.report.leaf_pairs) as usize)
     }
 
     /// Three vertices of four components a triangle, in the grid's frame.

@@ -223,6 +223,11 @@
 #define GRIDWALK_OVERFLOW_TRIANGLES 4u
 
 /**
+ * Of a report's overflow: some cells that were to be split stayed whole; the grid is complete.
+ */
+#define GRIDWALK_OVERFLOW_LEAVES 8u
+
+/**
  * Pipeline stages of builds in a barrier: `VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT`.
  */
 #define GRIDWALK_BUILD_STAGES 2050ull
@@ -367,9 +372,15 @@ typedef struct GridwalkCapacity {
     uint32_t cells;
     /**
      * Cells of all triangles, counted once a triangle, at most `GRIDWALK_MAX_PAIRS`: with exact overlap those that it meets, of a box of more
-     * than 32 cells all. Pairs beyond are dropped and reported.
+     * than 32 cells all. Pairs beyond are dropped and reported. The pairs of leaf cells lie behind them; where they do not fit, no cell is
+     * split.
      */
     uint32_t pairs;
+    /**
+     * Leaf cells of the second level, at most `GRIDWALK_MAX_CELLS`: cells with many triangles are split into 2^3, 4^3, 8^3, 16^3 or
+     * 32^3 of them as long as these fit. 0: a flat grid.
+     */
+    uint32_t leaf_cells;
 } GridwalkCapacity;
 
 /**
@@ -758,7 +769,7 @@ typedef struct GridwalkReport {
      */
     uint32_t pair_total;
     /**
-     * 0, or bits `GRIDWALK_OVERFLOW_PAIRS`, `GRIDWALK_OVERFLOW_CELLS` and `GRIDWALK_OVERFLOW_TRIANGLES`.
+     * 0, or bits `GRIDWALK_OVERFLOW_PAIRS`, `GRIDWALK_OVERFLOW_CELLS`, `GRIDWALK_OVERFLOW_TRIANGLES` and `GRIDWALK_OVERFLOW_LEAVES`.
      */
     uint32_t overflow;
     /**
@@ -781,6 +792,22 @@ typedef struct GridwalkReport {
      * Triangles of all geometries: the capacity of triangles that the build needed. 0xFFFFFFFF: that many or more.
      */
     uint32_t triangle_total;
+    /**
+     * Cells with so many triangles that they were to be split into leaf cells.
+     */
+    uint32_t split_cells;
+    /**
+     * Leaf cells that they asked for: the capacity of leaf cells that the build needed. 0xFFFFFFFF: that many or more.
+     */
+    uint32_t leaf_cells;
+    /**
+     * Pairs (leaf cell, triangle) that the grid lists beside `pairs`.
+     */
+    uint32_t leaf_pairs;
+    /**
+     * Zero.
+     */
+    uint32_t reserved;
 } GridwalkReport;
 
 #ifdef __cplusplus

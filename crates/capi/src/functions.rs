@@ -493,8 +493,8 @@ impl From<GridwalkRegion> for Region {
 
 impl From<&GridwalkCapacity> for Capacity {
     fn from(capacity: &GridwalkCapacity) -> Capacity {
-        let GridwalkCapacity { triangles, cells, pairs } = *capacity;
-        Capacity { triangles, cells, pairs }
+        let GridwalkCapacity { triangles, cells, pairs, leaf_cells } = *capacity;
+        Capacity { triangles, cells, pairs, leaf_cells }
     }
 }
 

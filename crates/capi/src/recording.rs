@@ -205,7 +205,7 @@ fn region(size: u64) -> GridwalkRegion {
 }
 
 fn build(tracer: &Tracer) -> GridwalkBuildInfo {
-    let capacity = GridwalkCapacity { triangles: 1000, cells: 8000, pairs: 16_000 };
+    let capacity = GridwalkCapacity { triangles: 1000, cells: 8000, pairs: 16_000, leaf_cells: 0 };
     let mut sizes = zeroed::<GridwalkBuildSizes>();
     // SAFETY: the tracer is alive, and the pointers are those of references.
     assert_eq!(unsafe { gridwalk_build_sizes(tracer.0, &capacity, &mut sizes) }, GridwalkResult::Ok);

@@ -73,6 +73,8 @@ pub const GRIDWALK_OVERFLOW_PAIRS: u32 = 1u32;
 pub const GRIDWALK_OVERFLOW_CELLS: u32 = 2u32;
 /// `GridwalkReport::overflow`: triangles beyond the capacity were left out; `GridwalkReport::triangle_total` would have sufficed.
 pub const GRIDWALK_OVERFLOW_TRIANGLES: u32 = 4u32;
+/// Of a report's overflow: some cells that were to be split stayed whole; the grid is complete.
+pub const GRIDWALK_OVERFLOW_LEAVES: u32 = 8u32;
 
 /// Pipeline stages of builds in a barrier: `VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT`.
 pub const GRIDWALK_BUILD_STAGES: u64 = 0x802u64;
@@ -170,8 +172,12 @@ pub struct GridwalkCapacity {
     /// Cells of the grid, at most `GRIDWALK_MAX_CELLS`; a build lowers its density to fit.
     pub cells: u32,
     /// Cells of all triangles, counted once a triangle, at most `GRIDWALK_MAX_PAIRS`: with exact overlap those that it meets, of a box of more
-    /// than 32 cells all. Pairs beyond are dropped and reported.
+    /// than 32 cells all. Pairs beyond are dropped and reported. The pairs of leaf cells lie behind them; where they do not fit, no cell is
+    /// split.
     pub pairs: u32,
+    /// Leaf cells of the second level, at most `GRIDWALK_MAX_CELLS`: cells with many triangles are split into 2^3, 4^3, 8^3, 16^3 or
+    /// 32^3 of them as long as these fit. 0: a flat grid.
+    pub leaf_cells: u32,
 }
 
 /// What a region needs.
@@ -391,7 +397,7 @@ pub struct GridwalkReport {
     pub pairs: u32,
     /// Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
     pub pair_total: u32,
-    /// 0, or bits `GRIDWALK_OVERFLOW_PAIRS`, `GRIDWALK_OVERFLOW_CELLS` and `GRIDWALK_OVERFLOW_TRIANGLES`.
+    /// 0, or bits `GRIDWALK_OVERFLOW_PAIRS`, `GRIDWALK_OVERFLOW_CELLS`, `GRIDWALK_OVERFLOW_TRIANGLES` and `GRIDWALK_OVERFLOW_LEAVES`.
     pub overflow: u32,
     /// Bits of the sort's largest key.
     pub key_bits: u32,
@@ -403,6 +409,14 @@ pub struct GridwalkReport {
     pub box_max: [f32; 3],
     /// Triangles of all geometries: the capacity of triangles that the build needed. 0xFFFFFFFF: that many or more.
     pub triangle_total: u32,
+    /// Cells with so many triangles that they were to be split into leaf cells.
+    pub split_cells: u32,
+    /// Leaf cells that they asked for: the capacity of leaf cells that the build needed. 0xFFFFFFFF: that many or more.
+    pub leaf_cells: u32,
+    /// Pairs (leaf cell, triangle) that the grid lists beside `pairs`.
+    pub leaf_pairs: u32,
+    /// Zero.
+    pub reserved: u32,
 }
 
 /// The library's own types and numbers are the header's.
@@ -415,6 +429,7 @@ const _: () = {
     assert!(GRIDWALK_OVERFLOW_PAIRS == gridwalk::gridwalk_core::layout::OVERFLOW_PAIRS);
     assert!(GRIDWALK_OVERFLOW_CELLS == gridwalk::gridwalk_core::layout::OVERFLOW_CELLS);
     assert!(GRIDWALK_OVERFLOW_TRIANGLES == gridwalk::gridwalk_core::layout::OVERFLOW_TRIANGLES);
+    assert!(GRIDWALK_OVERFLOW_LEAVES == gridwalk::gridwalk_core::layout::OVERFLOW_LEAVES);
     assert!(GRIDWALK_MAX_GEOMETRIES == gridwalk::MAX_GEOMETRIES && GRIDWALK_MAX_NEAREST == gridwalk::MAX_NEAREST);
     use gridwalk::gridwalk_core::geometry as core;
     assert!(GRIDWALK_FORMAT_FLOAT32X3 == core::FORMAT_FLOAT32X3 && GRIDWALK_FORMAT_FLOAT16X4 == core::FORMAT_FLOAT16X4);
@@ -451,6 +466,7 @@ macro_rules! same_layout {
 same_layout!(GridwalkRay, gridwalk::Ray, origin t_min direction t_max);
 same_layout!(GridwalkHit, gridwalk::Hit, t u v triangle);
 same_layout!(GridwalkReport, gridwalk::Report,
-    triangles dropped cells cells_in_use resolution longest_list pairs pair_total overflow key_bits box_min density box_max triangle_total);
+    triangles dropped cells cells_in_use resolution longest_list pairs pair_total overflow key_bits box_min density box_max triangle_total
+    split_cells leaf_cells leaf_pairs reserved);
 same_layout!(GridwalkGeometryRecord, gridwalk::GeometryRecord,
     transform scale stride offset vertex_count positions indices count triangle_count format index_type id mask flags);

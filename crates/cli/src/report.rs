@@ -56,6 +56,9 @@ pub struct Run {
     pub cells_in_use: u64,
     pub pairs: u64,
     pub longest_list: u64,
+    pub split_cells: u64,
+    pub leaf_cells: u64,
+    pub leaf_pairs: u64,
     pub grid_bytes: u64,
     pub scratch_bytes: u64,
     pub buffers: Vec<Buffer>,
@@ -122,6 +125,10 @@ impl Run {
             ("density".to_owned(), format!("{}", self.density)),
             ("cells".to_owned(), format!("{} ({} in use)", self.cells, self.cells_in_use)),
             ("pairs".to_owned(), format!("{} (longest list {})", self.pairs, self.longest_list)),
+            (
+                "second level".to_owned(),
+                format!("{} cells split into {} leaf cells, {} pairs", self.split_cells, self.leaf_cells, self.leaf_pairs),
+            ),
             ("grid".to_owned(), mib(self.grid_bytes)),
             ("scratch".to_owned(), mib(self.scratch_bytes)),
         ];

@@ -107,6 +107,9 @@ impl Session {
             cells_in_use: stats.report.cells_in_use.into(),
             pairs: stats.report.pairs.into(),
             longest_list: stats.report.longest_list.into(),
+            split_cells: if stats.report.leaf_pairs > 0 { stats.report.split_cells.into() } else { 0 },
+            leaf_cells: if stats.report.leaf_pairs > 0 { stats.report.leaf_cells.into() } else { 0 },
+            leaf_pairs: stats.report.leaf_pairs.into(),
             grid_bytes: stats.grid_bytes,
             scratch_bytes: stats.scratch_bytes,
             buffers: parts.into_iter().map(|(name, bytes)| Buffer { name, bytes }).collect(),
@@ -175,6 +178,7 @@ pub fn build_settings(grid: &high::Grid, defaults: &RenderDefaults) -> BuildSett
             Some(low::Overlap::Exact) => Overlap::Exact,
             None => library.overlap,
         },
+        split: grid.levels.map_or(library.split, |levels| levels > 1),
     }
 }
 

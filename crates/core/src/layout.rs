@@ -14,6 +14,14 @@ pub const OVERFLOW_CELLS: u32 = 2;
 /// [`Report::overflow`]: triangles beyond the capacity were left out; [`Report::triangle_total`] would have sufficed, unless saturated.
 pub const OVERFLOW_TRIANGLES: u32 = 4;
 
+/// [`Report::overflow`]: some cells that were to be split stayed whole, for lack of room for leaf cells or for their pairs.
+pub const OVERFLOW_LEAVES: u32 = 8;
+
+/// Of the second word of a cell's range: the cell is split; the first word is the index of its first leaf cell.
+pub const CELL_SPLIT: u32 = 1 << 31;
+/// Of the same word: the level, 2^level leaf cells along each axis.
+pub const CELL_LEVEL: u32 = 7;
+
 /// Of the word beside a triangle's first vertex: a vertex is not finite, or an index out of range. Then all its vertices are zero.
 pub const TRIANGLE_DROPPED: u32 = 1 << 31;
 /// Of the same word: the triangle's front is where its vertices go round clockwise.
@@ -57,8 +65,16 @@ pub struct GridHeader {
     pub bricks: [u32; 2],
     /// Zero but along axes on which the scene lies far from the origin; subtracting it from a vertex is exact.
     pub middle: [f32; 3],
+    /// Most levels of a split cell: a cell is 2^`fine_shift` of a walk's fine cells along each axis. 0: no cell is split.
+    pub fine_shift: u32,
+    /// `cell_size` / 2^`fine_shift`.
+    pub fine_cell_size: [f32; 3],
     /// Zero.
-    pub reserved: u32,
+    pub reserved0: u32,
+    /// `inverse_cell_size` * 2^`fine_shift`.
+    pub inverse_fine_cell_size: [f32; 3],
+    /// Zero.
+    pub reserved1: u32,
 }
 
 impl GridHeader {
@@ -80,7 +96,53 @@ pub struct Brick {
     pub reserved: u32,
 }
 
-/// Numbers that later steps of a build take from earlier ones.
+/// What a tile of bricks adds to the report, and gives the second level to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TileOccupancy {
+    /// Cells with at least one triangle.
+    pub cells_in_use: u32,
+    /// Triangles in the fullest cell.
+    pub longest_list: u32,
+    /// Cells to be split if [`crate::split::LEAST_SPLIT`] triangles are the least list, and if [`crate::split::LEAST_SPLIT_OF_LONG`] are.
+    pub split_cells: [u32; 2],
+    /// Triangles in their lists.
+    pub split_references: [u32; 2],
+    /// Their leaf cells.
+    pub leaf_cells: [u32; 2],
+    /// `split_cells` of all tiles before; this and those below are written by `report_spine`.
+    pub cells_before: u32,
+    /// `split_references` of all tiles before.
+    pub references_before: u32,
+    /// `leaf_cells` of all tiles before, saturating.
+    pub leaves_before: u32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// A cell with many triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SplitCell {
+    /// Its first reference among those of all split cells.
+    pub first_reference: u32,
+    /// Its list in the grid's references.
+    pub list_begin: u32,
+    /// Length of its list.
+    pub list_length: u32,
+    /// Its first leaf cell among all.
+    pub leaf_begin: u32,
+    /// Index of the cell.
+    pub cell: u32,
+    /// 2^`level` leaf cells along each axis; 0: they did not fit, so the cell stays whole.
+    pub level: u32,
+    /// The cell's coordinates x (low half) and y.
+    pub xy: u32,
+    /// The cell's coordinate z.
+    pub z: u32,
+}
+
+/// Numbers that later steps of a build take from earlier ones. The second level has a state of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct BuildState {
@@ -110,8 +172,14 @@ pub struct BuildState {
     pub kept_count: u32,
     /// Key of a pair without a cell.
     pub sentinel: u32,
-    /// Zero.
-    pub reserved: [u32; 3],
+    /// First of the pairs: 0, or of the second level, whose pairs lie behind those of the first.
+    pub first_pair: u32,
+    /// First of the cells: 0, or of the second level, whose leaf cells lie behind the cells.
+    pub first_cell: u32,
+    /// Cells that are to be split; of the second level.
+    pub split_cells: u32,
+    /// Triangles of the shortest list whose cell is split; of the second level.
+    pub least_split: u32,
 }
 
 /// Arguments of the build's indirect dispatches; each a `VkDispatchIndirectCommand` and a word of padding.
@@ -142,6 +210,30 @@ pub struct DispatchArguments {
     pub offsets_scan: [u32; 4],
     /// Of `ray_keys`: written only where rays are sorted; then only this and the first passes' of the sort are.
     pub ray_keys: [u32; 4],
+}
+
+/// Arguments of the indirect dispatches of the second level; as [`DispatchArguments`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LeafArguments {
+    /// Of `split_cells`.
+    pub split_cells: [u32; 4],
+    /// Of `leaf_count`.
+    pub count: [u32; 4],
+    /// Of the reduce and the downsweep of its counts' scan.
+    pub offsets_scan: [u32; 4],
+    /// Of that scan's spine.
+    pub offsets_spine: [u32; 4],
+    /// Of `leaf_emit`.
+    pub emit: [u32; 4],
+    /// Of `sort_histogram` and `sort_scatter`, for each pass.
+    pub sort: [[u32; 4]; MAX_PASSES],
+    /// Of the reduce and the downsweep of the digit table's scan, for each pass.
+    pub table_scan: [[u32; 4]; MAX_PASSES],
+    /// Of that scan's spine, for each pass.
+    pub table_spine: [[u32; 4]; MAX_PASSES],
+    /// Of `cell_ranges`.
+    pub cell_ranges: [u32; 4],
 }
 
 /// The box of some triangles.
@@ -181,9 +273,9 @@ pub struct Report {
     pub longest_list: u32,
     /// Pairs (cell, triangle) that the grid lists.
     pub pairs: u32,
-    /// Cells of all triangles, as [`BuildState::pair_total`]: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more.
+    /// Cells of all triangles, as [`BuildState::pair_total`], or pairs of both levels if those are more and did not fit: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more.
     pub pair_total: u32,
-    /// 0, or bits [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`] and [`OVERFLOW_TRIANGLES`].
+    /// 0, or bits [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`], [`OVERFLOW_TRIANGLES`] and [`OVERFLOW_LEAVES`].
     pub overflow: u32,
     /// Bits of the sort's largest key.
     pub key_bits: u32,
@@ -195,6 +287,14 @@ pub struct Report {
     pub box_max: [f32; 3],
     /// Triangles of all geometries: the capacity of triangles that the build needed. 0xFFFFFFFF: that many or more.
     pub triangle_total: u32,
+    /// Cells with so many triangles that they were to be split into leaf cells.
+    pub split_cells: u32,
+    /// Leaf cells that they asked for: the capacity of leaf cells that the build needed. 0xFFFFFFFF: that many or more.
+    pub leaf_cells: u32,
+    /// Pairs (leaf cell, triangle) that the grid lists beside `pairs`.
+    pub leaf_pairs: u32,
+    /// Zero.
+    pub reserved: u32,
 }
 
 impl Report {
@@ -206,6 +306,11 @@ impl Report {
     /// Whether the resolution was lowered for lack of capacity: the grid is complete, only coarser than asked for.
     pub const fn cells_overflowed(&self) -> bool {
         self.overflow & OVERFLOW_CELLS != 0
+    }
+
+    /// Whether some cells stayed whole that were to be split, for lack of capacity: the grid is complete, only slower.
+    pub const fn leaves_overflowed(&self) -> bool {
+        self.overflow & OVERFLOW_LEAVES != 0
     }
 
     /// Whether triangles were left out for lack of capacity: the grid is sound but misses the last of them.
@@ -233,11 +338,14 @@ pub struct TraceState {
     pub reserved: [u32; 2],
 }
 
+/// First bit of the place within the cell in [`WalkState::given_up`]: fine cells, eight bits an axis.
+pub const WALK_FINE: u32 = 8;
+
 /// Where a walk was given up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct WalkState {
-    /// 1 if the walk is to be continued.
+    /// Not 0 if the walk is to be continued; from bit [`WALK_FINE`] on the place within the cell.
     pub given_up: u32,
     /// Cell id.
     pub cell: u32,

@@ -12,6 +12,7 @@ pub mod overlap;
 pub mod ray;
 pub mod shape;
 pub mod sort;
+pub mod split;
 pub mod twin;
 pub mod vector;
 pub mod walk;

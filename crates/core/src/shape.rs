@@ -134,7 +134,7 @@ impl Shape {
         match kernel.name {
             "sort_histogram" | "sort_scatter" => self.sort_size,
             "bounds_spine" | "brick_reduce" | "gather" | "gather_records" | "geometry_scan" | "report_spine" | "scan_reduce"
-            | "scan_spine" | "scan_downsweep" => self.scan_size,
+            | "scan_spine" | "scan_downsweep" | "split_cells" => self.scan_size,
             _ => self.map_size,
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::grid::{boundary, brick_resolution, cell_id, cell_of};
 use crate::intersect::{Intersection, MovedRay, intersect_triangle};
-use crate::layout::{Brick, GridHeader, TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED, WalkState};
+use crate::layout::{Brick, CELL_LEVEL, CELL_SPLIT, GridHeader, TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED, WALK_FINE, WalkState};
 use crate::ray::MISS;
 use crate::vector::{Vec3, add, max, max_f32, min, min_f32, mul, sub};
 
@@ -80,7 +80,7 @@ pub struct Walk {
     pub never: Vec3,
     /// Whether the direction is positive.
     pub up: [bool; 3],
-    /// Where the walk is.
+    /// Where the walk is, in fine cells.
     pub cell: [i32; 3],
     /// First cell of the block around it.
     pub low: [i32; 3],
@@ -126,24 +126,35 @@ impl Default for Filter {
 fn walk_enter(walk: &mut Walk, grid: &Grid) {
     let header = grid.header;
     let bricks_along = brick_resolution(header.resolution);
-    let at = walk.cell.map(|i| i >> 2);
+    let mut shift = header.fine_shift;
+    let cell = walk.cell.map(|i| i >> shift);
+    let at = cell.map(|i| i >> 2);
     let brick = grid.bricks[cell_id(at.map(|i| i as u32), bricks_along) as usize];
-    let inner = walk.cell.map(|i| i & 3);
+    let inner = cell.map(|i| i & 3);
     let bit = inner[0] | (inner[1] << 2) | ((inner[2] & 1) << 4);
     let word = brick.mask[usize::from(inner[2] >= 2)];
     [walk.reference, walk.list_end] = [0, 0];
     if (word >> bit) & 1 != 0 {
-        [walk.reference, walk.list_end] = grid.cells[cell_id(walk.cell.map(|i| i as u32), header.resolution) as usize];
+        let mut range = grid.cells[cell_id(cell.map(|i| i as u32), header.resolution) as usize];
+        if range[1] & CELL_SPLIT != 0 {
+            let level = range[1] & CELL_LEVEL;
+            shift -= level;
+            let leaf = walk.cell.map(|i| (i >> shift) as u32 & ((1 << level) - 1));
+            range = grid.cells[(range[0] + cell_id(leaf, [1 << level; 3])) as usize];
+        }
+        [walk.reference, walk.list_end] = range;
     }
     let reach = brick.distance as i32;
     (walk.low, walk.high) = if reach == 0 {
-        (walk.cell, walk.cell.map(|i| i + 1))
+        let block = walk.cell.map(|i| i >> shift);
+        (block, block.map(|i| i + 1))
     } else {
         let end = header.resolution;
         (at.map(|i| ((i - (reach - 1)) << 2).max(0)), std::array::from_fn(|axis| ((at[axis] + reach) << 2).min(end[axis] as i32)))
     };
+    (walk.low, walk.high) = (walk.low.map(|i| i << shift), walk.high.map(|i| i << shift));
     let ahead = std::array::from_fn(|axis| (if walk.up[axis] { walk.high[axis] } else { walk.low[axis] }) as f32);
-    let edges = boundary(header.box_min, header.cell_size, ahead);
+    let edges = boundary(header.box_min, header.fine_cell_size, ahead);
     walk.boundaries = add(mul(sub(edges, walk.ray.origin), walk.inverse), walk.never);
     let nearest = min_f32(walk.boundaries[0], min_f32(walk.boundaries[1], walk.boundaries[2]));
     walk.exit = max_f32(walk.exit, nearest);
@@ -151,8 +162,8 @@ fn walk_enter(walk: &mut Walk, grid: &Grid) {
 
 fn walk_cell_at(walk: &Walk, header: &GridHeader, s: f32) -> [i32; 3] {
     let travelled = walk.ray.direction.map(|x| s * x);
-    let cells = mul(sub(add(walk.ray.origin, travelled), header.box_min), header.inverse_cell_size).map(f32::floor);
-    let last = sub(header.resolution.map(|n| n as f32), [1.0; 3]);
+    let cells = mul(sub(add(walk.ray.origin, travelled), header.box_min), header.inverse_fine_cell_size).map(f32::floor);
+    let last = sub(header.resolution.map(|n| (n << header.fine_shift) as f32), [1.0; 3]);
     min(max(cells, [0.0; 3]), last).map(|x| x as i32)
 }
 
@@ -212,7 +223,7 @@ pub fn walk_step(walk: &mut Walk, grid: &Grid) -> bool {
             (false, false) => inside[axis].max(low).min(cell),
         }
     });
-    if walk.cell[along] as u32 >= grid.header.resolution[along] {
+    if walk.cell[along] as u32 >= grid.header.resolution[along] << grid.header.fine_shift {
         return false;
     }
     walk_enter(walk, grid);
@@ -269,9 +280,11 @@ pub fn walk_commit(walk: &mut Walk, hit: Intersection, triangle: u32) {
 
 /// What the next dispatch needs to go on.
 pub fn walk_save(walk: &Walk, grid: &Grid) -> WalkState {
+    let shift = grid.header.fine_shift;
+    let [x, y, z] = walk.cell.map(|i| i as u32 & ((1 << shift) - 1));
     WalkState {
-        given_up: 1,
-        cell: cell_id(walk.cell.map(|i| i as u32), grid.header.resolution),
+        given_up: 1 | (x | y << 8 | z << 16) << WALK_FINE,
+        cell: cell_id(walk.cell.map(|i| i as u32 >> shift), grid.header.resolution),
         reference: walk.reference,
         exit: walk.exit,
         best_s: walk.best_s,
@@ -283,7 +296,9 @@ pub fn walk_save(walk: &Walk, grid: &Grid) -> WalkState {
 
 /// Goes on where a walk was given up.
 pub fn walk_restore(walk: &mut Walk, grid: &Grid, saved: &WalkState) {
-    walk.cell = cell_of(saved.cell, grid.header.resolution).map(|i| i as i32);
+    let cell = cell_of(saved.cell, grid.header.resolution);
+    let fine = saved.given_up >> WALK_FINE;
+    walk.cell = std::array::from_fn(|axis| (cell[axis] << grid.header.fine_shift | fine >> (8 * axis) & 255) as i32);
     walk.exit = saved.exit;
     walk_enter(walk, grid);
     walk.reference = saved.reference;

@@ -29,6 +29,9 @@
 // across empty space: a step leaves a block of cells, which is one cell where its brick holds triangles, and else all bricks around that
 // are known to be empty.
 //
+// Positions are counted in fine cells: the first level's cells are blocks of 2^fine_shift of them along each axis, the leaf cells of a split
+// cell (Kalojanov, Billeter and Slusallek 2011) smaller blocks.
+//
 // The integer cell is the truth: distances to boundaries are computed from it and never accumulated. A step moves along one axis by the
 // boundary, and along the others, inside of the block, to where the ray's point lies, never backwards. A block is entered where its
 // predecessor was left, and exits never decrease, so for every s between a block's entry and its exit the point of the ray lies within
@@ -74,13 +77,17 @@ const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
 
 #endif
 
-// [begin, end) in the references; {0, 0} for an empty cell.
+// [begin, end) in the references; {0, 0} for an empty cell. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
+// level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer GridwalkCells { uvec2 range[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint triangle[]; };
 // Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
 // triangle's number in its geometry, the geometry's id, and its mask.
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangles { vec4 vertex[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangleWordsIn { uvec4 vertex[]; };
+
+const uint GRIDWALK_CELL_SPLIT = 1u << 31;
+const uint GRIDWALK_CELL_LEVEL = 7u;
 
 const uint GRIDWALK_TRIANGLE_DROPPED = 1u << 31;
 const uint GRIDWALK_TRIANGLE_FLIPPED = 1u << 30; // its front is where its vertices go round clockwise
@@ -117,7 +124,12 @@ struct GridwalkGridHeader {
     uvec2 triangles;
     uvec2 bricks;
     vec3 middle; // in input coordinates
-    uint reserved;
+    uint fine_shift; // most levels of a split cell; 0: none is split
+    // A walk counts in fine cells, of which each cell has 2^fine_shift along an axis.
+    vec3 fine_cell_size;
+    uint reserved0;
+    vec3 inverse_fine_cell_size;
+    uint reserved1;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridwalkGridHeader header; };
@@ -285,8 +297,8 @@ struct GridwalkWalk {
     vec3 inverse; // of the direction; 0 where that is 0
     vec3 never; // added to the distances: beyond any where the direction is 0
     bvec3 up; // the direction is positive
-    ivec3 cell;
-    ivec3 low; // block of cells: [low, high)
+    ivec3 cell; // fine
+    ivec3 low; // block of fine cells: [low, high)
     ivec3 high;
     vec3 boundaries; // s of the boundary ahead along each axis
     float exit;
@@ -312,32 +324,42 @@ ivec3 gridwalk_select(bvec3 which, ivec3 yes, ivec3 no) {
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
 void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader grid) {
     ivec3 bricks_along = ivec3(gridwalk_brick_resolution(grid.resolution));
-    ivec3 at = walk.cell >> 2;
+    int shift = int(grid.fine_shift);
+    ivec3 cell = walk.cell >> shift;
+    ivec3 at = cell >> 2;
     GridwalkBrick brick = GridwalkBricks(grid.bricks).brick[at.x + bricks_along.x * (at.y + bricks_along.y * at.z)];
-    ivec3 inner = walk.cell & 3;
+    ivec3 inner = cell & 3;
     uint bit = uint(inner.x | (inner.y << 2) | ((inner.z & 1) << 4));
     uint word = inner.z < 2 ? brick.mask.x : brick.mask.y;
     walk.reference = 0u;
     walk.list_end = 0u;
     if (((word >> bit) & 1u) != 0u) {
-        uvec2 range = GridwalkCells(grid.cells).range[gridwalk_cell_id(uvec3(walk.cell), grid.resolution)];
+        uvec2 range = GridwalkCells(grid.cells).range[gridwalk_cell_id(uvec3(cell), grid.resolution)];
+        if ((range.y & GRIDWALK_CELL_SPLIT) != 0u) {
+            int level = int(range.y & GRIDWALK_CELL_LEVEL);
+            shift -= level;
+            ivec3 leaf = (walk.cell >> shift) & ((1 << level) - 1);
+            range = GridwalkCells(grid.cells).range[range.x + uint(leaf.x + ((leaf.y + (leaf.z << level)) << level))];
+        }
         walk.reference = range.x;
         walk.list_end = range.y;
     }
     int reach = int(brick.distance);
     bool jump = reach != 0;
-    walk.low = jump ? max((at - ivec3(reach - 1)) << 2, ivec3(0)) : walk.cell;
-    walk.high = jump ? min((at + ivec3(reach)) << 2, ivec3(grid.resolution)) : walk.cell + ivec3(1);
-    precise vec3 edges = gridwalk_boundary(grid.box_min, grid.cell_size, vec3(gridwalk_select(walk.up, walk.high, walk.low)));
+    // Of a jump the cells' shift is still the first level's.
+    ivec3 block = walk.cell >> shift;
+    walk.low = (jump ? max((at - ivec3(reach - 1)) << 2, ivec3(0)) : block) << shift;
+    walk.high = (jump ? min((at + ivec3(reach)) << 2, ivec3(grid.resolution)) : block + ivec3(1)) << shift;
+    precise vec3 edges = gridwalk_boundary(grid.box_min, grid.fine_cell_size, vec3(gridwalk_select(walk.up, walk.high, walk.low)));
     walk.boundaries = (edges - walk.ray.origin) * walk.inverse + walk.never;
     walk.exit = max(walk.exit, min(walk.boundaries.x, min(walk.boundaries.y, walk.boundaries.z)));
 }
 
 ivec3 gridwalk_walk_cell_at(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
     precise vec3 travelled = s * walk.ray.direction;
-    precise vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_cell_size);
+    precise vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_fine_cell_size);
     // Clamped as floats: a conversion out of range may give anything.
-    return ivec3(gridwalk_whole(min(max(cells, vec3(0.0)), vec3(grid.resolution) - vec3(1.0))));
+    return ivec3(gridwalk_whole(min(max(cells, vec3(0.0)), vec3(grid.resolution << grid.fine_shift) - vec3(1.0))));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
@@ -371,7 +393,7 @@ bool gridwalk_walk_step(precise inout GridwalkWalk walk, GridwalkGridHeader grid
     ivec3 beyond = gridwalk_select(walk.up, walk.high, walk.low - ivec3(1));
     walk.cell = gridwalk_select(along, beyond, inside);
     int coordinate = x ? walk.cell.x : (y ? walk.cell.y : walk.cell.z);
-    uint count = x ? grid.resolution.x : (y ? grid.resolution.y : grid.resolution.z);
+    uint count = (x ? grid.resolution.x : (y ? grid.resolution.y : grid.resolution.z)) << grid.fine_shift;
     if (uint(coordinate) >= count) {
         return false;
     }

@@ -123,14 +123,8 @@ pub static CELL_RANGES: Kernel = Kernel {
     spirv: spirv!("../spirv/cell_ranges.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 40,
-    accesses: &[
-        ("grid", Access::Read),
-        ("state", Access::Read),
-        ("keys", Access::Read),
-        ("cells", Access::Write),
-        ("report", Access::Write),
-    ],
+    push_constant_size: 32,
+    accesses: &[("state", Access::Read), ("keys", Access::Read), ("cells", Access::Write), ("report", Access::Write)],
     spec_constants: &[],
 };
 
@@ -187,7 +181,7 @@ pub static CONFIGURE: Kernel = Kernel {
     spirv: spirv!("../spirv/configure.spv"),
     local_size: [1, 1, 1],
     local_size_ids: [None, None, None],
-    push_constant_size: 96,
+    push_constant_size: 104,
     accesses: &[
         ("scene", Access::Read),
         ("grid", Access::Write),
@@ -268,6 +262,64 @@ pub static GEOMETRY_SCAN: Kernel = Kernel {
     push_constant_size: 40,
     accesses: &[("records", Access::Read), ("firsts", Access::Write), ("state", Access::Write), ("arguments", Access::Write)],
     spec_constants: &[(1, "ITEMS_EACH", 16), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "BOUNDS_TILE", 2048)],
+};
+
+/// Kernel `leaf_args`, from `glsl/map/leaf_args.comp`.
+pub static LEAF_ARGS: Kernel = Kernel {
+    name: "leaf_args",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/leaf_args.spv"),
+    local_size: [1, 1, 1],
+    local_size_ids: [None, None, None],
+    push_constant_size: 40,
+    accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::ReadWrite), ("report", Access::ReadWrite)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "SORT_TILES", 1)],
+};
+
+/// Kernel `leaf_count`, from `glsl/map/leaf_count.comp`.
+pub static LEAF_COUNT: Kernel = Kernel {
+    name: "leaf_count",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/leaf_count.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 64,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("split_cells", Access::Read),
+        ("references", Access::Read),
+        ("triangles", Access::Read),
+        ("counts", Access::Write),
+        ("masks", Access::Write),
+        ("cells", Access::Write),
+    ],
+    spec_constants: &[(1, "EXACT", 0)],
+};
+
+/// Kernel `leaf_emit`, from `glsl/map/leaf_emit.comp`.
+pub static LEAF_EMIT: Kernel = Kernel {
+    name: "leaf_emit",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/leaf_emit.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 96,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("split_cells", Access::Read),
+        ("references", Access::Read),
+        ("triangles", Access::Read),
+        ("offsets", Access::Read),
+        ("masks", Access::Read),
+        ("keys_a", Access::Write),
+        ("keys_b", Access::Write),
+        ("values_a", Access::Write),
+        ("values_b", Access::Write),
+        ("cells", Access::Write),
+    ],
+    spec_constants: &[(1, "EXACT", 0)],
 };
 
 /// Kernel `nearest_hits`, from `glsl/map/nearest_hits.comp`.
@@ -402,9 +454,16 @@ pub static REPORT_SPINE: Kernel = Kernel {
     spirv: spirv!("../spirv/report_spine.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 24,
-    accesses: &[("grid", Access::Read), ("partials", Access::Read), ("report", Access::Write)],
-    spec_constants: &[(1, "BRICK_TILE", 1024)],
+    push_constant_size: 56,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("partials", Access::ReadWrite),
+        ("leaf_state", Access::Write),
+        ("arguments", Access::Write),
+        ("report", Access::Write),
+    ],
+    spec_constants: &[(1, "BRICK_TILE", 1024), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "SORT_BITS", 10)],
 };
 
 /// Kernel `scan_downsweep`, from `glsl/cooperative/scan_downsweep.comp`.
@@ -474,6 +533,24 @@ pub static SORT_SCATTER: Kernel = Kernel {
     spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0)],
 };
 
+/// Kernel `split_cells`, from `glsl/cooperative/split_cells.comp`.
+pub static SPLIT_CELLS: Kernel = Kernel {
+    name: "split_cells",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/split_cells.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("cells", Access::Read),
+        ("partials", Access::Read),
+        ("split_cells", Access::Write),
+    ],
+    spec_constants: &[(1, "BRICKS_EACH", 4)],
+};
+
 /// Kernel `trace_args`, from `glsl/map/trace_args.comp`.
 pub static TRACE_ARGS: Kernel = Kernel {
     name: "trace_args",
@@ -516,6 +593,9 @@ pub static ALL: &[&Kernel] = &[
     &GATHER,
     &GATHER_RECORDS,
     &GEOMETRY_SCAN,
+    &LEAF_ARGS,
+    &LEAF_COUNT,
+    &LEAF_EMIT,
     &NEAREST_HITS,
     &OVERLAP_COUNT,
     &OVERLAP_EMIT,
@@ -529,6 +609,7 @@ pub static ALL: &[&Kernel] = &[
     &SCAN_SPINE,
     &SORT_HISTOGRAM,
     &SORT_SCATTER,
+    &SPLIT_CELLS,
     &TRACE_ARGS,
     &TRACE_CONTINUE_ARGS,
 ];
@@ -685,22 +766,26 @@ const _: () = {
     assert!(size(|host: &Host| &host.kept_count) == 4);
     assert!(core::mem::offset_of!(Host, sentinel) == 48);
     assert!(size(|host: &Host| &host.sentinel) == 4);
-    assert!(core::mem::offset_of!(Host, reserved) == 52);
-    assert!(size(|host: &Host| &host.reserved) == 12);
+    assert!(core::mem::offset_of!(Host, first_pair) == 52);
+    assert!(size(|host: &Host| &host.first_pair) == 4);
+    assert!(core::mem::offset_of!(Host, first_cell) == 56);
+    assert!(size(|host: &Host| &host.first_cell) == 4);
+    assert!(core::mem::offset_of!(Host, split_cells) == 60);
+    assert!(size(|host: &Host| &host.split_cells) == 4);
+    assert!(core::mem::offset_of!(Host, least_split) == 64);
+    assert!(size(|host: &Host| &host.least_split) == 4);
 };
 const _: () = {
     use crate::push::CellRanges as Host;
-    assert!(core::mem::offset_of!(Host, grid) == 0);
-    assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 0);
     assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, keys) == 16);
+    assert!(core::mem::offset_of!(Host, keys) == 8);
     assert!(size(|host: &Host| &host.keys) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 24);
+    assert!(core::mem::offset_of!(Host, cells) == 16);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(core::mem::offset_of!(Host, report) == 32);
+    assert!(core::mem::offset_of!(Host, report) == 24);
     assert!(size(|host: &Host| &host.report) == 8);
-    assert!(size_of::<Host>() == 40);
+    assert!(size_of::<Host>() == 32);
 };
 const _: () = {
     use crate::push::ClearCells as Host;
@@ -782,9 +867,11 @@ const _: () = {
     assert!(size(|host: &Host| &host.fixed_y) == 4);
     assert!(core::mem::offset_of!(Host, fixed_z) == 88);
     assert!(size(|host: &Host| &host.fixed_z) == 4);
-    assert!(core::mem::offset_of!(Host, exact) == 92);
+    assert!(core::mem::offset_of!(Host, levels) == 92);
+    assert!(size(|host: &Host| &host.levels) == 4);
+    assert!(core::mem::offset_of!(Host, exact) == 96);
     assert!(size(|host: &Host| &host.exact) == 4);
-    assert!(size_of::<Host>() == 96);
+    assert!(size_of::<Host>() == 104);
 };
 const _: () = {
     use crate::push::CountHits as Host;
@@ -951,8 +1038,16 @@ const _: () = {
     assert!(size(|host: &Host| &host.bricks) == 8);
     assert!(core::mem::offset_of!(Host, middle) == 112);
     assert!(size(|host: &Host| &host.middle) == 12);
-    assert!(core::mem::offset_of!(Host, reserved) == 124);
-    assert!(size(|host: &Host| &host.reserved) == 4);
+    assert!(core::mem::offset_of!(Host, fine_shift) == 124);
+    assert!(size(|host: &Host| &host.fine_shift) == 4);
+    assert!(core::mem::offset_of!(Host, fine_cell_size) == 128);
+    assert!(size(|host: &Host| &host.fine_cell_size) == 12);
+    assert!(core::mem::offset_of!(Host, reserved0) == 140);
+    assert!(size(|host: &Host| &host.reserved0) == 4);
+    assert!(core::mem::offset_of!(Host, inverse_fine_cell_size) == 144);
+    assert!(size(|host: &Host| &host.inverse_fine_cell_size) == 12);
+    assert!(core::mem::offset_of!(Host, reserved1) == 156);
+    assert!(size(|host: &Host| &host.reserved1) == 4);
 };
 const _: () = {
     use gridwalk_core::Hit as Host;
@@ -965,6 +1060,70 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, triangle) == 12);
     assert!(size(|host: &Host| &host.triangle) == 4);
     assert!(size_of::<Host>() == 16);
+};
+const _: () = {
+    use crate::push::LeafArgs as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 8);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, arguments) == 16);
+    assert!(size(|host: &Host| &host.arguments) == 8);
+    assert!(core::mem::offset_of!(Host, report) == 24);
+    assert!(size(|host: &Host| &host.report) == 8);
+    assert!(core::mem::offset_of!(Host, pair_capacity) == 32);
+    assert!(size(|host: &Host| &host.pair_capacity) == 4);
+    assert!(core::mem::offset_of!(Host, pass_capacity) == 36);
+    assert!(size(|host: &Host| &host.pass_capacity) == 4);
+    assert!(size_of::<Host>() == 40);
+};
+const _: () = {
+    use crate::push::LeafCount as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, split_cells) == 16);
+    assert!(size(|host: &Host| &host.split_cells) == 8);
+    assert!(core::mem::offset_of!(Host, references) == 24);
+    assert!(size(|host: &Host| &host.references) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 32);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, counts) == 40);
+    assert!(size(|host: &Host| &host.counts) == 8);
+    assert!(core::mem::offset_of!(Host, masks) == 48);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 56);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(size_of::<Host>() == 64);
+};
+const _: () = {
+    use crate::push::LeafEmit as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, split_cells) == 16);
+    assert!(size(|host: &Host| &host.split_cells) == 8);
+    assert!(core::mem::offset_of!(Host, references) == 24);
+    assert!(size(|host: &Host| &host.references) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 32);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 40);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, masks) == 48);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, keys_a) == 56);
+    assert!(size(|host: &Host| &host.keys_a) == 8);
+    assert!(core::mem::offset_of!(Host, keys_b) == 64);
+    assert!(size(|host: &Host| &host.keys_b) == 8);
+    assert!(core::mem::offset_of!(Host, values_a) == 72);
+    assert!(size(|host: &Host| &host.values_a) == 8);
+    assert!(core::mem::offset_of!(Host, values_b) == 80);
+    assert!(size(|host: &Host| &host.values_b) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 88);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(size_of::<Host>() == 96);
 };
 const _: () = {
     use crate::push::NearestHits as Host;
@@ -1138,16 +1297,32 @@ const _: () = {
     assert!(size(|host: &Host| &host.box_max) == 12);
     assert!(core::mem::offset_of!(Host, triangle_total) == 76);
     assert!(size(|host: &Host| &host.triangle_total) == 4);
+    assert!(core::mem::offset_of!(Host, split_cells) == 80);
+    assert!(size(|host: &Host| &host.split_cells) == 4);
+    assert!(core::mem::offset_of!(Host, leaf_cells) == 84);
+    assert!(size(|host: &Host| &host.leaf_cells) == 4);
+    assert!(core::mem::offset_of!(Host, leaf_pairs) == 88);
+    assert!(size(|host: &Host| &host.leaf_pairs) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 92);
+    assert!(size(|host: &Host| &host.reserved) == 4);
 };
 const _: () = {
     use crate::push::ReportSpine as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 16);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, report) == 16);
+    assert!(core::mem::offset_of!(Host, leaf_state) == 24);
+    assert!(size(|host: &Host| &host.leaf_state) == 8);
+    assert!(core::mem::offset_of!(Host, arguments) == 32);
+    assert!(size(|host: &Host| &host.arguments) == 8);
+    assert!(core::mem::offset_of!(Host, report) == 40);
     assert!(size(|host: &Host| &host.report) == 8);
-    assert!(size_of::<Host>() == 24);
+    assert!(core::mem::offset_of!(Host, leaf_capacity) == 48);
+    assert!(size(|host: &Host| &host.leaf_capacity) == 4);
+    assert!(size_of::<Host>() == 56);
 };
 const _: () = {
     use crate::push::ScanDownsweep as Host;
@@ -1216,6 +1391,22 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, pass) == 48);
     assert!(size(|host: &Host| &host.pass) == 4);
     assert!(size_of::<Host>() == 56);
+};
+const _: () = {
+    use crate::push::SplitCells as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 16);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 24);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, split_cells) == 32);
+    assert!(size(|host: &Host| &host.split_cells) == 8);
+    assert!(core::mem::offset_of!(Host, leaf_capacity) == 40);
+    assert!(size(|host: &Host| &host.leaf_capacity) == 4);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use crate::push::TraceArgs as Host;

@@ -63,7 +63,8 @@
 //!
 //! **Overflow.** Pairs beyond the capacity are dropped, never written out of bounds; the report says so and what would have sufficed
 //! ([`Report::pairs_overflowed`], [`Report::needed_pairs`]). Such a grid is sound but misses triangles. A density that asks for more cells than
-//! the capacity is lowered and reported; such a grid is complete.
+//! the capacity is lowered and reported; such a grid is complete. So is one whose cells were not split for lack of room
+//! ([`Report::leaves_overflowed`]).
 //!
 //! **Threads.** A [`Tracer`] is `Send` and `Sync`, all methods take `&self`; a command buffer is recorded by one thread at a time.
 //!

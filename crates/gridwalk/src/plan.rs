@@ -10,7 +10,7 @@ use std::mem::offset_of;
 use crate::kernels::*;
 use crate::push;
 use crate::shape::{Shape, split_workgroups};
-use crate::sizes::{Capacity, pass_capacity};
+use crate::sizes::{Capacity, leaf_pass_capacity, pass_capacity};
 
 /// Memory that the kernels of a plan share: each kernel's accesses to it come from the kernel's own qualifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,6 +40,9 @@ pub enum Buffer {
     Occupancy,
     DistancesX,
     DistancesY,
+    LeafState,
+    LeafArguments,
+    SplitCells,
     Rays,
     Hits,
     RayCount,
@@ -53,7 +56,7 @@ pub enum Buffer {
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 32] = [
+    pub const ALL: [Buffer; 35] = [
         Buffer::Positions,
         Buffer::Indices,
         Buffer::Records,
@@ -77,6 +80,9 @@ impl Buffer {
         Buffer::Occupancy,
         Buffer::DistancesX,
         Buffer::DistancesY,
+        Buffer::LeafState,
+        Buffer::LeafArguments,
+        Buffer::SplitCells,
         Buffer::Rays,
         Buffer::Hits,
         Buffer::RayCount,
@@ -179,7 +185,7 @@ pub enum Item {
     Barrier(Barrier),
 }
 
-const MAX_ITEMS: usize = 40 + 10 * MAX_PASSES;
+const MAX_ITEMS: usize = 60 + 20 * MAX_PASSES;
 
 /// A list of steps and barriers, without allocation.
 #[derive(Clone, Debug)]
@@ -194,7 +200,7 @@ impl Plan {
     }
 
     fn push(&mut self, item: Item) {
-        // The bound holds for every capacity: a pass adds ten items, everything else fewer than 40.
+        // The bound holds for every capacity: a pass of either level adds ten items, everything else fewer than 60.
         debug_assert!(self.len < MAX_ITEMS);
         if let Some(slot) = self.items.get_mut(self.len) {
             *slot = item;
@@ -258,24 +264,53 @@ const SCAN_OFFSETS: u32 = 0;
 const SCAN_TABLE: u32 = 1;
 const SCAN_FIRST_TABLE: u32 = 2;
 
-/// Bit of [`Step::variant`] of `overlap_count` and `overlap_emit_large`.
+/// Bit of [`Step::variant`] of `overlap_count`, `overlap_emit_large`, `leaf_count` and `leaf_emit`.
 pub(crate) const EXACT: u32 = 1;
 
 fn argument(offset: usize) -> Dispatch {
     Dispatch::Indirect(Buffer::Arguments, offset as u64)
 }
 
+fn leaf_argument(offset: usize) -> Dispatch {
+    Dispatch::Indirect(Buffer::LeafArguments, offset as u64)
+}
+
 fn map_groups(elements: u32, shape: &Shape) -> Dispatch {
     Dispatch::Direct(split_workgroups(elements.div_ceil(shape.map_size)))
 }
 
-fn scan(plan: &mut Plan, which: u32, values: Buffer, groups: Dispatch, spine: Dispatch) {
-    let (values, partials, state) = (values.token(), Buffer::ScanPartials.token(), Buffer::State.token());
+fn scan(plan: &mut Plan, state: Buffer, which: u32, values: Buffer, groups: Dispatch, spine: Dispatch) {
+    let (values, partials, state) = (values.token(), Buffer::ScanPartials.token(), state.token());
     plan.step(Step::new(&SCAN_REDUCE, groups, push::ScanReduce { state, values, partials, which, padding: 0 }));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(&SCAN_SPINE, spine, push::ScanSpine { state, partials, kept: state, which, padding: 0 }));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(&SCAN_DOWNSWEEP, groups, push::ScanDownsweep { state, partials, values, which, padding: 0 }));
+}
+
+/// Workgroups of a pass of the sort.
+struct SortGroups {
+    sort: Dispatch,
+    table_scan: Dispatch,
+    table_spine: Dispatch,
+}
+
+/// Sorts pairs, a digit a pass; after the last pass the values lie in `values_b`.
+fn sort(plan: &mut Plan, state: Buffer, passes: u32, values_b: Buffer, groups: impl Fn(usize) -> SortGroups) {
+    use Buffer::*;
+    let (keys_a, keys_b, values_a, values_b, table) = (KeysA.token(), KeysB.token(), ValuesA.token(), values_b.token(), Table.token());
+    for pass in 0..passes {
+        let groups = groups(pass as usize);
+        plan.barrier(Barrier::Shader);
+        let histogram = push::SortHistogram { state: state.token(), keys_a, keys_b, table, pass, padding: 0 };
+        plan.step(Step::new(&SORT_HISTOGRAM, groups.sort, histogram));
+        plan.barrier(Barrier::Shader);
+        let which = if pass == 0 { SCAN_FIRST_TABLE } else { SCAN_TABLE };
+        scan(plan, state, which, Table, groups.table_scan, groups.table_spine);
+        plan.barrier(Barrier::Shader);
+        let scatter = push::SortScatter { state: state.token(), keys_a, keys_b, values_a, values_b, table, pass, padding: 0 };
+        plan.step(Step::new(&SORT_SCATTER, groups.sort, scatter));
+    }
 }
 
 /// Workgroups of the steps that run over all triangles.
@@ -319,23 +354,6 @@ fn gather(plan: &mut Plan, capacity: &Capacity, source: Source, shape: &Shape) -
     }
 }
 
-/// A pass of the sort, whose dispatches have their arguments in `slot`; after the last pass the values lie in `values_b`.
-fn sort_pass(plan: &mut Plan, pass: u32, slot: u32, table_spine: Dispatch, values_b: Buffer) {
-    use Buffer::*;
-    let (state, keys_a, keys_b, table) = (State.token(), KeysA.token(), KeysB.token(), Table.token());
-    let slot = 16 * slot as usize;
-    let sort = argument(offset_of!(DispatchArguments, sort) + slot);
-    plan.barrier(Barrier::Shader);
-    plan.step(Step::new(&SORT_HISTOGRAM, sort, push::SortHistogram { state, keys_a, keys_b, table, pass, padding: 0 }));
-    plan.barrier(Barrier::Shader);
-    let table_scan = argument(offset_of!(DispatchArguments, table_scan) + slot);
-    let which = if pass == 0 { SCAN_FIRST_TABLE } else { SCAN_TABLE };
-    scan(plan, which, Table, table_scan, table_spine);
-    plan.barrier(Barrier::Shader);
-    let (values_a, values_b) = (ValuesA.token(), values_b.token());
-    plan.step(Step::new(&SORT_SCATTER, sort, push::SortScatter { state, keys_a, keys_b, values_a, values_b, table, pass, padding: 0 }));
-}
-
 /// The rebuild, from positions and indices to cell ranges (thesis sections 3.1 and 3.4).
 pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> Plan {
     use Buffer::*;
@@ -369,7 +387,9 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
             fixed_x,
             fixed_y,
             fixed_z,
+            levels: if capacity.leaf_cells > 0 { 2 } else { 1 },
             exact: inputs.exact.into(),
+            padding: 0,
         },
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
@@ -385,7 +405,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
             .variant(exact),
     );
     plan.barrier(Barrier::Shader);
-    scan(&mut plan, SCAN_OFFSETS, Offsets, groups.offsets_scan, Dispatch::Direct([1, 1, 1]));
+    scan(&mut plan, State, SCAN_OFFSETS, Offsets, groups.offsets_scan, Dispatch::Direct([1, 1, 1]));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
         &PAIR_ARGS,
@@ -406,15 +426,16 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     // The two write different words, but of the same arrays, and hazards are told by arrays.
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(&OVERLAP_EMIT_LARGE, argument(offset_of!(DispatchArguments, emit_large)), emission).variant(exact));
-    for pass in 0..passes {
-        let spine = argument(offset_of!(DispatchArguments, table_spine) + 16 * pass as usize);
-        sort_pass(&mut plan, pass, pass, spine, References);
-    }
+    sort(&mut plan, State, passes, References, |pass| SortGroups {
+        sort: argument(offset_of!(DispatchArguments, sort) + 16 * pass),
+        table_scan: argument(offset_of!(DispatchArguments, table_scan) + 16 * pass),
+        table_spine: argument(offset_of!(DispatchArguments, table_spine) + 16 * pass),
+    });
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
         &CELL_RANGES,
         argument(offset_of!(DispatchArguments, cell_ranges)),
-        push::CellRanges { grid, state: State.token(), keys: KeysB.token(), cells: Cells.token(), report: Report.token() },
+        push::CellRanges { state: State.token(), keys: KeysB.token(), cells: Cells.token(), report: Report.token() },
     ));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
@@ -429,13 +450,82 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     plan.step(Step::new(
         &REPORT_SPINE,
         Dispatch::Direct([1, 1, 1]),
-        push::ReportSpine { grid, partials: Occupancy.token(), report: Report.token() },
+        push::ReportSpine {
+            grid,
+            state,
+            partials: Occupancy.token(),
+            leaf_state: LeafState.token(),
+            arguments: LeafArguments.token(),
+            report: Report.token(),
+            leaf_capacity: capacity.leaf_cells,
+            padding: 0,
+        },
     ));
-    plan.barrier(Barrier::Shader);
+    let splits = capacity.leaf_cells > 0;
+    plan.barrier(if splits { Barrier::ShaderAndIndirect } else { Barrier::Shader });
     plan.step(Step::new(&BRICK_DISTANCE_Y, bricks, push::BrickDistanceY { grid, distances_x: x, distances: y }));
+    if splits {
+        plan.step(Step::new(
+            &SPLIT_CELLS,
+            leaf_argument(offset_of!(gridwalk_core::layout::LeafArguments, split_cells)),
+            push::SplitCells {
+                grid,
+                state: LeafState.token(),
+                cells: Cells.token(),
+                partials: Occupancy.token(),
+                split_cells: SplitCells.token(),
+                leaf_capacity: capacity.leaf_cells,
+                padding: 0,
+            },
+        ));
+    }
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(&BRICK_DISTANCE_Z, bricks, push::BrickDistanceZ { grid, distances_y: y, bricks: Bricks.token() }));
+    if splits {
+        second_level(&mut plan, capacity, exact, shape);
+    }
     plan
+}
+
+/// The lists of leaf cells, from the records of the cells that are split.
+fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape) {
+    use Buffer::*;
+    type Arguments = gridwalk_core::layout::LeafArguments;
+    let (grid, state, cells, triangles, references) =
+        (Header.token(), LeafState.token(), Cells.token(), Triangles.token(), References.token());
+    let (split_cells, report, arguments) = (SplitCells.token(), Report.token(), LeafArguments.token());
+    // Offsets and masks lie where the first level's sorted keys are no longer needed.
+    let (offsets, masks) = (KeysA.token(), KeysB.token());
+    let passes = leaf_pass_capacity(capacity, shape);
+    let count = leaf_argument(offset_of!(Arguments, count));
+    plan.step(
+        Step::new(&LEAF_COUNT, count, push::LeafCount { grid, state, split_cells, references, triangles, counts: offsets, masks, cells })
+            .variant(exact),
+    );
+    plan.barrier(Barrier::Shader);
+    let scan_groups = leaf_argument(offset_of!(Arguments, offsets_scan));
+    let spine = leaf_argument(offset_of!(Arguments, offsets_spine));
+    scan(plan, LeafState, SCAN_OFFSETS, KeysA, scan_groups, spine);
+    plan.barrier(Barrier::Shader);
+    let (pair_capacity, pass_capacity) = (capacity.pairs, passes);
+    plan.step(Step::new(
+        &LEAF_ARGS,
+        Dispatch::Direct([1, 1, 1]),
+        push::LeafArgs { state, offsets, arguments, report, pair_capacity, pass_capacity },
+    ));
+    plan.barrier(Barrier::ShaderAndIndirect);
+    let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), references);
+    let emission =
+        push::LeafEmit { grid, state, split_cells, references, triangles, offsets, masks, keys_a, keys_b, values_a, values_b, cells };
+    plan.step(Step::new(&LEAF_EMIT, leaf_argument(offset_of!(Arguments, emit)), emission).variant(exact));
+    sort(plan, LeafState, passes, References, |pass| SortGroups {
+        sort: leaf_argument(offset_of!(Arguments, sort) + 16 * pass),
+        table_scan: leaf_argument(offset_of!(Arguments, table_scan) + 16 * pass),
+        table_spine: leaf_argument(offset_of!(Arguments, table_spine) + 16 * pass),
+    });
+    plan.barrier(Barrier::Shader);
+    let ranges = push::CellRanges { state, keys: keys_b, cells, report };
+    plan.step(Step::new(&CELL_RANGES, leaf_argument(offset_of!(Arguments, cell_ranges)), ranges));
 }
 
 /// Times that a trace goes on with walks that ran out of their budget before they are reported: 209,600 triangles a ray in all, or more
@@ -540,9 +630,12 @@ pub fn ray_sort_plan(rays: &RayInputs, shape: &Shape) -> Plan {
     let (keys, values) = if writes_a(passes, 0) { (KeysA, ValuesA) } else { (KeysB, Order) };
     let push = push::RayKeys { grid: Header.token(), rays: Rays.token(), state, keys: keys.token(), values: values.token() };
     plan.step(Step::new(&RAY_KEYS, argument(offset_of!(DispatchArguments, ray_keys)), push));
-    for pass in 0..passes {
-        sort_pass(&mut plan, pass, 0, Dispatch::Direct([1, 1, 1]), Order);
-    }
+    // The first pass's arguments are those of all.
+    sort(&mut plan, State, passes, Order, |_| SortGroups {
+        sort: argument(offset_of!(DispatchArguments, sort)),
+        table_scan: argument(offset_of!(DispatchArguments, table_scan)),
+        table_spine: Dispatch::Direct([1, 1, 1]),
+    });
     plan
 }
 

@@ -27,8 +27,26 @@ pub(crate) struct BrickReduce {
 #[repr(C)]
 pub(crate) struct ReportSpine {
     pub(crate) grid: u64,
+    pub(crate) state: u64,
     pub(crate) partials: u64,
+    pub(crate) leaf_state: u64,
+    pub(crate) arguments: u64,
     pub(crate) report: u64,
+    pub(crate) leaf_capacity: u32,
+    pub(crate) padding: u32,
+}
+
+/// Of kernel `split_cells`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SplitCells {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) cells: u64,
+    pub(crate) partials: u64,
+    pub(crate) split_cells: u64,
+    pub(crate) leaf_capacity: u32,
+    pub(crate) padding: u32,
 }
 
 /// Of kernel `scan_downsweep`.
@@ -124,7 +142,6 @@ pub(crate) struct BruteForce {
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct CellRanges {
-    pub(crate) grid: u64,
     pub(crate) state: u64,
     pub(crate) keys: u64,
     pub(crate) cells: u64,
@@ -187,7 +204,9 @@ pub(crate) struct Configure {
     pub(crate) fixed_x: u32,
     pub(crate) fixed_y: u32,
     pub(crate) fixed_z: u32,
+    pub(crate) levels: u32,
     pub(crate) exact: u32,
+    pub(crate) padding: u32,
 }
 
 /// Of kernel `overlap_count`.
@@ -251,6 +270,41 @@ pub(crate) struct RaySortArgs {
     pub(crate) count: u64,
     pub(crate) max_rays: u32,
     pub(crate) indirect: u32,
+}
+
+/// Of kernel `leaf_args`.
+pub(crate) type LeafArgs = PairArgs;
+
+/// Of kernel `leaf_count`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LeafCount {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) split_cells: u64,
+    pub(crate) references: u64,
+    pub(crate) triangles: u64,
+    pub(crate) counts: u64,
+    pub(crate) masks: u64,
+    pub(crate) cells: u64,
+}
+
+/// Of kernel `leaf_emit`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LeafEmit {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) split_cells: u64,
+    pub(crate) references: u64,
+    pub(crate) triangles: u64,
+    pub(crate) offsets: u64,
+    pub(crate) masks: u64,
+    pub(crate) keys_a: u64,
+    pub(crate) keys_b: u64,
+    pub(crate) values_a: u64,
+    pub(crate) values_b: u64,
+    pub(crate) cells: u64,
 }
 
 /// Of kernel `trace_args`.

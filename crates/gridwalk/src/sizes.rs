@@ -1,7 +1,11 @@
 //! Every byte offset of the library: where the parts of a region lie, and how large regions are.
 
 use ash::vk;
-use gridwalk_core::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, MAX_PASSES, Report, TraceState, WalkState};
+use gridwalk_core::layout::{
+    Bounds, Brick, BuildState, DispatchArguments, GridHeader, LeafArguments, MAX_PASSES, Report, SplitCell, TileOccupancy, TraceState,
+    WalkState,
+};
+use gridwalk_core::split::LEAST_SPLIT;
 
 use crate::error::{Error, Result};
 use crate::shape::Shape;
@@ -15,7 +19,11 @@ pub struct Capacity {
     pub cells: u32,
     /// Cells of all triangles, counted once a triangle, at most 2^28: with exact overlap those that it meets, of a box of more than 32 cells all.
     /// Pairs beyond are dropped and reported.
+    /// The pairs of leaf cells lie behind them; where they do not fit, no cell is split.
     pub pairs: u32,
+    /// Leaf cells of the second level, at most 2^28: cells with many triangles are split into 2^3, 4^3, 8^3, 16^3 or 32^3 of them as
+    /// long as these fit. 0: the flat grid of the thesis.
+    pub leaf_cells: u32,
 }
 
 /// Most triangles of a grid.
@@ -105,7 +113,7 @@ impl GridLayout {
         let mut packer = Packer(0);
         GridLayout {
             header: packer.part(size_of::<GridHeader>() as u64),
-            cells: packer.part(u64::from(capacity.cells.max(1)).next_multiple_of(CELLS_EACH) * 8),
+            cells: packer.part((u64::from(capacity.cells.max(1)).next_multiple_of(CELLS_EACH) + u64::from(capacity.leaf_cells)) * 8),
             references: packer.part(u64::from(capacity.pairs.max(1)) * 4),
             triangles: packer.part(u64::from(capacity.triangles.max(1)) * 48),
             bricks: packer.part(brick_capacity(capacity) * size_of::<Brick>() as u64),
@@ -130,6 +138,9 @@ pub(crate) struct ScratchLayout {
     pub(crate) occupancy: Part,
     pub(crate) distances_x: Part,
     pub(crate) distances_y: Part,
+    pub(crate) leaf_state: Part,
+    pub(crate) leaf_arguments: Part,
+    pub(crate) split_cells: Part,
     pub(crate) size: u64,
 }
 
@@ -138,6 +149,8 @@ impl ScratchLayout {
         let offsets = u64::from(capacity.triangles) + 1;
         let table = shape.table_entries(capacity.pairs);
         let pairs = u64::from(capacity.pairs.max(1));
+        // Each has a list of so many pairs.
+        let split_cells = if capacity.leaf_cells > 0 { pairs / u64::from(LEAST_SPLIT) } else { 0 };
         let mut packer = Packer(0);
         ScratchLayout {
             state: packer.part(size_of::<BuildState>() as u64),
@@ -146,21 +159,25 @@ impl ScratchLayout {
             bounds_partials: packer.part(u64::from(shape.bounds_tiles(capacity.triangles)) * size_of::<Bounds>() as u64),
             offsets: packer.part(offsets * 4),
             cell_masks: packer.part(u64::from(capacity.triangles.max(1)) * 4),
-            scan_partials: packer.part(offsets.max(table).div_ceil(u64::from(shape.scan_tile())) * 4),
-            keys_a: packer.part(pairs * 4),
+            scan_partials: packer.part(offsets.max(table).max(pairs + 1).div_ceil(u64::from(shape.scan_tile())) * 4),
+            // The second level's offsets have an end.
+            keys_a: packer.part((pairs + 1) * 4),
             keys_b: packer.part(pairs * 4),
             values_a: packer.part(pairs * 4),
             table: packer.part(table.max(1) * 4),
-            occupancy: packer.part(brick_capacity(capacity).div_ceil(u64::from(shape.brick_tile())) * 8),
+            occupancy: packer.part(brick_capacity(capacity).div_ceil(u64::from(shape.brick_tile())) * size_of::<TileOccupancy>() as u64),
             distances_x: packer.part(brick_capacity(capacity) * 4),
             distances_y: packer.part(brick_capacity(capacity) * 4),
+            leaf_state: packer.part(size_of::<BuildState>() as u64),
+            leaf_arguments: packer.part(size_of::<LeafArguments>() as u64),
+            split_cells: packer.part(split_cells.max(1) * size_of::<SplitCell>() as u64),
             size: packer.0,
         }
     }
 }
 
 /// Name and bytes of every part of the grid and the scratch region, in this order.
-pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64); 19] {
+pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64); 22] {
     let grid = GridLayout::new(capacity);
     let scratch = ScratchLayout::new(capacity, shape);
     [
@@ -183,6 +200,9 @@ pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64);
         ("occupancy partials", scratch.occupancy),
         ("distances x", scratch.distances_x),
         ("distances y", scratch.distances_y),
+        ("leaf state", scratch.leaf_state),
+        ("leaf arguments", scratch.leaf_arguments),
+        ("split cells", scratch.split_cells),
     ]
     .map(|(name, part)| (name, part.size))
 }
@@ -237,13 +257,26 @@ impl RaySortLayout {
 
 /// Passes that a plan records: digits of the largest key that the capacity of cells admits.
 pub(crate) fn pass_capacity(capacity: &Capacity, shape: &Shape) -> u32 {
-    let key_bits = 32 - (capacity.cells.max(1) - 1).leading_zeros();
+    passes_of(capacity.cells, shape)
+}
+
+/// Likewise of the second level.
+pub(crate) fn leaf_pass_capacity(capacity: &Capacity, shape: &Shape) -> u32 {
+    passes_of(capacity.leaf_cells, shape)
+}
+
+fn passes_of(keys: u32, shape: &Shape) -> u32 {
+    let key_bits = 32 - (keys.max(1) - 1).leading_zeros();
     key_bits.div_ceil(shape.sort_bits).min(MAX_PASSES as u32)
 }
 
 pub(crate) fn check_capacity(capacity: &Capacity) -> Result<()> {
-    let limits =
-        [("triangles", capacity.triangles, MAX_TRIANGLES), ("cells", capacity.cells, MAX_CELLS), ("pairs", capacity.pairs, MAX_PAIRS)];
+    let limits = [
+        ("triangles", capacity.triangles, MAX_TRIANGLES),
+        ("cells", capacity.cells, MAX_CELLS),
+        ("pairs", capacity.pairs, MAX_PAIRS),
+        ("leaf cells", capacity.leaf_cells, MAX_CELLS),
+    ];
     match limits.into_iter().find(|(_, given, limit)| given > limit) {
         Some((what, given, limit)) => Err(Error::Capacity { what, given: given.into(), limit: limit.into() }),
         None => Ok(()),

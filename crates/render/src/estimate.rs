@@ -6,7 +6,7 @@ use gridwalk::gridwalk_core::twin::configure::{Configure, configure_header};
 use gridwalk::{Capacity, Overlap, Shape, region_bytes};
 use gridwalk_scene::Scene;
 
-use crate::grid::cell_capacity;
+use crate::grid::{cell_capacity, first_leaf_cells};
 use crate::{BuildSettings, Error, Result};
 
 /// The grid that a scene would get. A device may arrive at one cell more or fewer along an axis.
@@ -54,6 +54,7 @@ pub fn estimate_grid(scene: &Scene, settings: &BuildSettings) -> Result<GridEsti
         cell_capacity: cell_capacity(triangles, settings)?,
         density: settings.density,
         fixed: settings.resolution.unwrap_or([0; 3]),
+        splits: settings.split,
         exact: settings.overlap == Overlap::Exact,
     };
     let (header, density, _) = configure_header(&info, &bounds, [[0; 2]; 4]);
@@ -78,7 +79,8 @@ pub fn estimate_grid(scene: &Scene, settings: &BuildSettings) -> Result<GridEsti
         }
     });
     let room = u32::try_from(box_pairs).unwrap_or(u32::MAX).min(gridwalk::MAX_PAIRS);
-    let capacity = Capacity { triangles, cells: info.cell_capacity, pairs: room };
+    let leaf_cells = if settings.split { first_leaf_cells(triangles) } else { 0 };
+    let capacity = Capacity { triangles, cells: info.cell_capacity, pairs: room, leaf_cells };
     let (grid_bytes, scratch_bytes) = region_bytes(&capacity, &Shape::GPU);
     Ok(GridEstimate { resolution: header.resolution, density, cells: header.cell_count, pairs, box_pairs, grid_bytes, scratch_bytes })
 }

@@ -18,12 +18,14 @@ pub struct BuildSettings {
     pub resolution: Option<[u32; 3]>,
     /// Which cells list a triangle.
     pub overlap: Overlap,
+    /// Whether cells with many triangles are split into leaf cells: the second level. Without it the grid is the thesis's.
+    pub split: bool,
 }
 
 impl Default for BuildSettings {
     fn default() -> Self {
         let BuildOptions { density, resolution, overlap } = BuildOptions::default();
-        BuildSettings { density, resolution, overlap }
+        BuildSettings { density, resolution, overlap, split: true }
     }
 }
 
@@ -155,6 +157,7 @@ impl GridBuilder {
         let first_pairs = u64::from(geometry.triangle_count) * FIRST_PAIRS_EACH + 1024;
         let mut pairs = outgrown.as_ref().and_then(|outgrown| outgrown.pairs).map_or(first_pairs, u64::from);
         let mut needed = u32::MAX;
+        let mut leaf_cells = if settings.split { outgrown.as_ref().map_or(0, |outgrown| outgrown.leaf_cells) } else { 0 };
         let mut outgrown = outgrown;
         for attempts in 1..=MAX_ATTEMPTS {
             let roomy = |needed: u64, most: u32, of: fn(&Capacity) -> u32| {
@@ -166,12 +169,17 @@ impl GridBuilder {
                 triangles,
                 cells: cell_capacity(triangles, &settings)?,
                 pairs: roomy(pairs, MAX_PAIRS, |capacity| capacity.pairs),
+                leaf_cells: if settings.split { first_leaf_cells(triangles).max(leaf_cells) } else { 0 },
             };
             let mut grid = match self.allocate(capacity, settings) {
                 Ok(grid) => grid,
                 // First without the room that nobody has asked for.
                 Err(Error::OutOfDeviceMemory { .. }) if outgrown.is_some() => {
                     outgrown = None;
+                    continue;
+                }
+                Err(Error::OutOfDeviceMemory { .. }) if settings.split => {
+                    settings.split = false;
                     continue;
                 }
                 // Fewer cells need fewer pairs: a coarser grid is better than none.
@@ -186,6 +194,11 @@ impl GridBuilder {
             grid.stats.attempts = attempts;
             let report = &grid.stats.report;
             if !report.pairs_overflowed() {
+                if let Some(more) = grid.more_leaves().filter(|_| attempts < MAX_ATTEMPTS) {
+                    leaf_cells = more.leaf_cells;
+                    pairs = pairs.max(more.pairs.into());
+                    continue;
+                }
                 grid.wanted = wanted;
                 grid.lowered_for = (settings.density < wanted.density).then_some(geometry.triangle_count);
                 return Ok(grid);
@@ -243,6 +256,29 @@ struct Outgrown {
     capacity: Capacity,
     /// Pairs that a build has counted, where it was for them.
     pairs: Option<u32>,
+    /// Leaf cells that there is to be room for.
+    leaf_cells: u32,
+}
+
+/// Room that would let more cells be split.
+struct Leaves {
+    leaf_cells: u32,
+    pairs: u32,
+}
+
+/// Leaf cells before the first count is known.
+pub(crate) fn first_leaf_cells(triangles: u32) -> u32 {
+    (triangles / 2).clamp(4096, MAX_CELLS)
+}
+
+/// More pairs of both levels than that are too much memory for what leaf cells gain.
+fn most_pairs(triangles: u32) -> u32 {
+    triangles.saturating_mul(12).clamp(1 << 16, MAX_PAIRS)
+}
+
+/// More leaf cells than that are too much memory for what they gain.
+fn most_leaf_cells(triangles: u32) -> u32 {
+    triangles.saturating_mul(4).clamp(1 << 17, MAX_CELLS)
 }
 
 /// Where a capacity has turned out too small: a quarter more than is needed, and never less than there was.
@@ -296,6 +332,17 @@ impl Grid {
         self.engine.tracer()
     }
 
+    /// Whether the last build found too little room for leaf cells or their pairs, and more is possible.
+    fn more_leaves(&self) -> Option<Leaves> {
+        let report = &self.stats.report;
+        let leaf_cells = report.leaf_cells.min(most_leaf_cells(self.capacity.triangles)).max(self.capacity.leaf_cells);
+        let pairs = report.needed_pairs()?.min(MAX_PAIRS).max(self.capacity.pairs);
+        let grows = leaf_cells > self.capacity.leaf_cells || pairs > self.capacity.pairs;
+        // Where large triangles meet all leaf cells of theirs, lists that are shorter elsewhere are not worth the memory.
+        let grows = grows && pairs <= most_pairs(self.capacity.triangles);
+        (report.leaves_overflowed() && grows && self.capacity.leaf_cells > 0).then_some(Leaves { leaf_cells, pairs })
+    }
+
     /// Frees the memory of the build. The next [`Grid::rebuild`] takes it anew.
     pub fn free_scratch(&mut self) {
         self.scratch = None;
@@ -319,13 +366,14 @@ impl Grid {
             }
             self.run(&geometry)?;
             self.stats.attempts = 1;
-            if !self.stats.report.pairs_overflowed() {
+            if !self.stats.report.pairs_overflowed() && self.more_leaves().is_none() {
                 return Ok(());
             }
         }
         let overflowed = geometry.triangle_count <= self.capacity.triangles && !may_be_finer;
         let pairs = self.stats.report.needed_pairs().filter(|&pairs| overflowed && pairs <= MAX_PAIRS);
-        let outgrown = Outgrown { capacity: self.capacity, pairs };
+        let leaf_cells = self.more_leaves().filter(|_| overflowed).map_or(0, |more| more.leaf_cells);
+        let outgrown = Outgrown { capacity: self.capacity, pairs, leaf_cells: leaf_cells.max(self.capacity.leaf_cells) };
         // The old memory goes first: the new one may not fit beside it.
         self.scratch = None;
         let wanted = self.wanted;
@@ -335,7 +383,7 @@ impl Grid {
 
     fn run(&mut self, geometry: &Geometry) -> Result<()> {
         let Some(scratch) = &self.scratch else { return Ok(()) };
-        let BuildSettings { density, resolution, overlap } = self.settings;
+        let BuildSettings { density, resolution, overlap, split: _ } = self.settings;
         let info = BuildInfo {
             input: (*geometry).into(),
             grid: self.grid.region(),

@@ -132,7 +132,8 @@ fn main() -> Result<()> {
     let tracer = unsafe { Tracer::new(&DeviceDesc::new(instance, *physical_device, raw))? };
 
     let (vertex_count, triangle_count, ray_count) = ((SIDE + 1) * (SIDE + 1), 2 * SIDE * SIDE, WIDTH * HEIGHT);
-    let capacity = Capacity { triangles: triangle_count, cells: 8 * triangle_count, pairs: 8 * triangle_count };
+    let capacity =
+        Capacity { triangles: triangle_count, cells: 8 * triangle_count, pairs: 8 * triangle_count, leaf_cells: triangle_count / 2 };
     let sizes = tracer.build_sizes(&capacity)?;
     let (positions, positions_buffer) = shared.buffer("positions", 12 * u64::from(vertex_count))?;
     let (indices, indices_buffer) = shared.buffer("indices", 12 * u64::from(triangle_count))?;

@@ -1,14 +1,16 @@
 use bytemuck::Zeroable;
 use gridwalk::Report;
-use gridwalk::kernels::{BRICK_DISTANCE_X, BRICK_DISTANCE_Y, BRICK_DISTANCE_Z, BRICK_REDUCE, REPORT_SPINE};
+use gridwalk::kernels::{BRICK_DISTANCE_X, BRICK_DISTANCE_Y, BRICK_DISTANCE_Z, BRICK_REDUCE, REPORT_SPINE, SPLIT_CELLS};
 use gridwalk_core::dispatch::split_workgroups;
-use gridwalk_core::grid::brick_resolution;
-use gridwalk_core::layout::{Brick, GridHeader};
+use gridwalk_core::grid::{brick_resolution, cell_of};
+use gridwalk_core::layout::{Brick, BuildState, GridHeader, LeafArguments, SplitCell, TileOccupancy};
+use gridwalk_core::split::{leaf_count_of, leaf_level};
 use gridwalk_core::twin::brick_distance_x::brick_distance_x;
 use gridwalk_core::twin::brick_distance_y::brick_distance_y;
 use gridwalk_core::twin::brick_distance_z::brick_distance_z;
 use gridwalk_core::twin::brick_reduce::brick_reduce;
 use gridwalk_core::twin::report_spine::report_spine;
+use gridwalk_core::twin::split_cells::split_cells;
 use gridwalk_tests::gpu::{CANARY, Gpu};
 use gridwalk_tests::random::Random;
 
@@ -18,7 +20,7 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
     let shape = gpu.tracer.shape();
     let what = format!("{resolution:?}, {fill} full, seed {seed}, {shape:?}");
     let cell_count: u32 = resolution.iter().product();
-    let header = GridHeader { cell_count, resolution, ..header(&Default::default(), 1.0, [0; 3]) };
+    let header = GridHeader { cell_count, resolution, fine_shift: seed as u32 % 6, ..header(&Default::default(), 1.0, [0; 3]) };
     let mut random = Random::new(seed);
     let mut next = 0;
     let cells: Vec<[u32; 2]> = (0..cell_count)
@@ -27,7 +29,7 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
                 return [0, 0];
             }
             let begin = next;
-            next += 1 + random.below(9);
+            next += 1 + if random.below(20) == 0 { random.below(1_000) } else { random.below(40) };
             [begin, next]
         })
         .collect();
@@ -37,24 +39,23 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
     let grid = gpu.upload("grid", &[header]);
     let cell_memory = gpu.upload("cells", &cells);
     let bricks = gpu.guarded("bricks", 16 * len as u64);
-    let partials = gpu.guarded("partials", 8 * tiles as u64);
+    let partials = gpu.guarded("partials", (size_of::<TileOccupancy>() * tiles) as u64);
     let distances = [gpu.guarded("distances x", 4 * len as u64), gpu.guarded("distances y", 4 * len as u64)];
-    let report = gpu.upload("report", &[Report::zeroed()]);
     let reduce_groups = split_workgroups(tiles as u32, 1);
     let groups = split_workgroups(count, shape.map_size);
     gpu.launch(&BRICK_REDUCE, 0, &[&grid, &cell_memory, &bricks, &partials], &[], reduce_groups);
 
     let mut expected = vec![Brick::zeroed(); len];
-    let mut sums = vec![[CANARY; 2]; tiles];
-    brick_reduce(&shape, reduce_groups, resolution, &cells, &mut expected, &mut sums);
+    let mut sums = vec![TileOccupancy::default(); tiles];
+    brick_reduce(&shape, reduce_groups, &header, &cells, &mut expected, &mut sums);
     assert_same(&format!("{what}: bricks"), &bricks.read::<Brick>(0, len), &expected);
-    assert_same(&format!("{what}: partials"), &partials.read::<[u32; 2]>(0, tiles), &sums);
+    assert_same(&format!("{what}: partials"), &partials.read::<TileOccupancy>(0, tiles), &sums);
 
-    gpu.launch(&REPORT_SPINE, 0, &[&grid, &partials, &report], &[], [1, 1, 1]);
-    let mut whole = Report::zeroed();
-    report_spine(&shape, resolution, &sums, &mut whole);
-    assert_same(&format!("{what}: report"), &report.read::<Report>(0, 1), &[whole]);
-    assert_eq!(whole.cells_in_use as usize, cells.iter().filter(|[_, end]| *end != 0).count(), "{what}");
+    // Lists that are short on average, and lists that are long.
+    for kept_count in [next, 100 * next] {
+        let leaf_state = check_report(gpu, &header, kept_count, &mut sums, &what);
+        check_split_cells(gpu, &header, &cells, &leaf_state, &sums, &what);
+    }
 
     let [x, y] = &distances;
     gpu.launch(&BRICK_DISTANCE_X, 0, &[&grid, &bricks, x], &[], groups);
@@ -67,6 +68,64 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
     assert_same(&format!("{what}: x"), &x.read::<u32>(0, len), &expected_x);
     assert_same(&format!("{what}: y"), &y.read::<u32>(0, len), &expected_y);
     assert_same(&format!("{what}: z"), &bricks.read::<Brick>(0, len), &expected);
+}
+
+/// The state of the second level, after comparing it and all else that the kernel writes.
+pub fn check_report(gpu: &Gpu, header: &GridHeader, kept_count: u32, sums: &mut [TileOccupancy], what: &str) -> BuildState {
+    let shape = gpu.tracer.shape();
+    let what = format!("{what}, {kept_count} pairs");
+    let state = BuildState { kept_count, overflow: 2, ..BuildState::default() };
+    let grid = gpu.upload("grid", &[*header]);
+    let main = gpu.upload("state", &[state]);
+    let partials = gpu.upload("partials", sums);
+    let memory = [
+        gpu.guarded("leaf state", size_of::<BuildState>() as u64),
+        gpu.upload("leaf arguments", &[LeafArguments::zeroed()]),
+        gpu.upload("report", &[Report::zeroed()]),
+    ];
+    let capacity = 10_000;
+    let [leaf_memory, argument_memory, report_memory] = &memory;
+    gpu.launch(&REPORT_SPINE, 0, &[&grid, &main, &partials, leaf_memory, argument_memory, report_memory], &[capacity], [1, 1, 1]);
+    let (mut leaf_state, mut arguments, mut report) = (BuildState::default(), LeafArguments::zeroed(), Report::zeroed());
+    report_spine(&shape, header, &state, sums, &mut leaf_state, &mut arguments, &mut report, capacity);
+    assert_same(&format!("{what}: partials"), &partials.read::<TileOccupancy>(0, sums.len()), sums);
+    assert_same(&format!("{what}: state"), &leaf_memory.read::<BuildState>(0, 1), &[leaf_state]);
+    assert_same(&format!("{what}: arguments"), &argument_memory.read::<LeafArguments>(0, 1), &[arguments]);
+    assert_same(&format!("{what}: report"), &report_memory.read::<Report>(0, 1), &[report]);
+    leaf_state
+}
+
+/// The records are the twin's, and cover the lists of all cells that are long enough, without gap or overlap.
+fn check_split_cells(gpu: &Gpu, header: &GridHeader, cells: &[[u32; 2]], state: &BuildState, sums: &[TileOccupancy], what: &str) {
+    let shape = gpu.tracer.shape();
+    let len = state.split_cells as usize;
+    let groups = split_workgroups(sums.len() as u32, 1);
+    let capacity = 10_000;
+    let memory = [
+        gpu.upload("grid", &[*header]),
+        gpu.upload("leaf state", &[*state]),
+        gpu.upload("cells", cells),
+        gpu.upload("partials", sums),
+        gpu.guarded("split cells", ((len + 1) * size_of::<SplitCell>()) as u64),
+    ];
+    gpu.launch(&SPLIT_CELLS, 0, &memory.each_ref(), &[capacity], groups);
+    let untouched: SplitCell = bytemuck::cast([CANARY; 8]);
+    let mut expected = vec![untouched; len + 1];
+    split_cells(&shape, groups, header, state.least_split, cells, sums, &mut expected, capacity);
+    let found = memory[4].read::<SplitCell>(0, len + 1);
+    assert_same(&format!("{what}: split cells"), &found, &expected);
+    let (mut references, mut leaves) = (0, 0);
+    for (index, record) in found[..len].iter().enumerate() {
+        let cell = cell_of(record.cell, header.resolution);
+        assert_eq!([record.xy & 0xFFFF, record.xy >> 16, record.z], cell, "{what}: record {index}");
+        assert_eq!([record.list_begin, record.list_begin + record.list_length], cells[record.cell as usize], "{what}: record {index}");
+        assert_eq!((record.first_reference, record.leaf_begin), (references, leaves), "{what}: record {index}");
+        let level = leaf_level(record.list_length, state.least_split, header.fine_shift);
+        references += record.list_length;
+        leaves += leaf_count_of(level);
+        assert_eq!(record.level, if leaves <= capacity { level } else { 0 }, "{what}: record {index}");
+    }
+    assert_eq!(references, state.offset_count - 1, "{what}");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use gridwalk::kernels::CONFIGURE;
 use gridwalk_core::gather::gathered_state;
 use gridwalk_core::grid::boundary;
 use gridwalk_core::layout::{Bounds, BuildState, DispatchArguments, GridHeader, OVERFLOW_CELLS};
+use gridwalk_core::split::refined;
 use gridwalk_core::twin::configure::{Configure, PAD, configure_header, configure_state};
 use gridwalk_tests::gpu::Gpu;
 use gridwalk_tests::random::Random;
@@ -44,7 +45,7 @@ fn check(gpu: &Gpu, info: Configure, scene: Bounds, what: &str) -> GridHeader {
     let [a, b, c, d] = &parts;
     let memory = [&device_scene, &grid, &device_state, &device_arguments, &device_report, a, b, c, d];
     let [x, y, z] = info.fixed;
-    let words = [info.cell_capacity, info.density.to_bits(), x, y, z, info.exact.into()];
+    let words = [info.cell_capacity, info.density.to_bits(), x, y, z, if info.splits { 2 } else { 1 }, info.exact.into()];
     gpu.launch(&CONFIGURE, 0, &memory, &words, [1, 1, 1]);
 
     let what = format!("{what}: {info:?} {scene:?}");
@@ -62,8 +63,13 @@ fn check(gpu: &Gpu, info: Configure, scene: Bounds, what: &str) -> GridHeader {
         assert!(close(header.inverse_cell_size[axis], 1.0 / header.cell_size[axis]), "{what}: {header:?}");
     }
     // All that is no quotient is the twin's.
-    let GridHeader { cell_size, inverse_cell_size, resolution, cell_count, .. } = header;
-    assert_eq!(header, GridHeader { cell_size, inverse_cell_size, resolution, cell_count, ..twin }, "{what}");
+    let GridHeader { cell_size, inverse_cell_size, resolution, cell_count, fine_cell_size, inverse_fine_cell_size, .. } = header;
+    let same = GridHeader { cell_size, inverse_cell_size, resolution, cell_count, fine_cell_size, inverse_fine_cell_size, ..twin };
+    assert_eq!(header, same, "{what}");
+    let fine = refined(&header, header.fine_shift);
+    assert_eq!((fine.cell_size, fine.inverse_cell_size), (fine_cell_size, inverse_fine_cell_size), "{what}");
+    let least = fine_cell_size.into_iter().fold(f32::INFINITY, f32::min);
+    assert!(header.fine_shift == 0 || (info.splits && least >= 4.0 * header.pad), "{what}: {header:?}");
     assert_eq!(u64::from(cell_count), resolution.iter().map(|n| u64::from(*n)).product::<u64>(), "{what}");
     assert!(cell_count <= info.cell_capacity.max(1), "{what}: {header:?}");
     let end = boundary(header.box_min, header.cell_size, resolution.map(|n| n as f32));
@@ -95,7 +101,7 @@ fn check(gpu: &Gpu, info: Configure, scene: Bounds, what: &str) -> GridHeader {
     header
 }
 
-const INFO: Configure = Configure { triangle_count: 1000, cell_capacity: 1 << 28, density: 8.0, fixed: [0; 3], exact: false };
+const INFO: Configure = Configure { triangle_count: 1000, cell_capacity: 1 << 28, density: 8.0, fixed: [0; 3], splits: true, exact: false };
 
 fn scene(low: [f32; 3], high: [f32; 3]) -> Bounds {
     Bounds { low, high, ..Bounds::EMPTY }
@@ -116,6 +122,7 @@ fn configure_random_boxes() {
             cell_capacity: 1 + random.below(1 << room),
             density: 10f32.powf(random.range(-3.0, 3.0)),
             fixed: if random.below(4) == 0 { [1 + random.below(5000), 1 + random.below(50), 1 + random.below(500)] } else { [0; 3] },
+            splits: random.below(4) > 0,
             exact: random.below(2) == 0,
         };
         check(gpu, info, scene(low, high), &format!("seed {seed}"));

@@ -1,14 +1,12 @@
 //! Kernels of one workgroup at the largest sizes that the library admits. lavapipe ends all loops of an invocation, silently, after 65,535
 //! turns: here it would show.
 
-use bytemuck::Zeroable;
-use gridwalk::kernels::{BOUNDS_SPINE, REPORT_SPINE, SCAN_SPINE};
-use gridwalk::{MAX_PAIRS, MAX_TRIANGLES, Report, Shape};
+use gridwalk::kernels::{BOUNDS_SPINE, SCAN_SPINE};
+use gridwalk::{MAX_PAIRS, MAX_TRIANGLES, Shape};
 use gridwalk_core::gather::gathered_state;
 use gridwalk_core::grid::brick_resolution;
-use gridwalk_core::layout::{Bounds, BuildState, GridHeader};
+use gridwalk_core::layout::{Bounds, BuildState, GridHeader, TileOccupancy};
 use gridwalk_core::twin::bounds_spine::bounds_spine;
-use gridwalk_core::twin::report_spine::report_spine;
 use gridwalk_core::twin::scan_spine::scan_spine;
 use gridwalk_tests::gpu::Gpu;
 use gridwalk_tests::random::Random;
@@ -63,15 +61,19 @@ fn the_largest_report() {
             let grid = GridHeader { resolution, cell_count: resolution.iter().product(), ..header(&Default::default(), 1.0, [0; 3]) };
             let bricks: u32 = brick_resolution(resolution).iter().product();
             let mut random = Random::new(2);
-            let partials: Vec<[u32; 2]> =
-                (0..bricks.div_ceil(shape.brick_tile())).map(|_| [random.below(4_000), random.below(1 << 20)]).collect();
-            let grid = gpu.upload("grid", &[grid]);
-            let memory = gpu.upload("partials", &partials);
-            let report = gpu.upload("report", &[Report::zeroed()]);
-            gpu.launch(&REPORT_SPINE, 0, &[&grid, &memory, &report], &[], [1, 1, 1]);
-            let mut expected = Report::zeroed();
-            report_spine(&shape, resolution, &partials, &mut expected);
-            assert_same(&format!("{resolution:?}, {shape:?}"), &report.read::<Report>(0, 1), &[expected]);
+            let partials: Vec<TileOccupancy> = (0..bricks.div_ceil(shape.brick_tile()))
+                .map(|_| TileOccupancy {
+                    cells_in_use: random.below(4_000),
+                    longest_list: random.below(1 << 20),
+                    split_cells: [random.below(400), random.below(200)],
+                    split_references: [random.below(600), random.below(400)],
+                    leaf_cells: [random.below(1 << 18), random.below(1 << 10)],
+                    ..TileOccupancy::default()
+                })
+                .collect();
+            for kept_count in [1000, 1 << 28] {
+                super::bricks::check_report(gpu, &grid, kept_count, &mut partials.clone(), &format!("{resolution:?}, {shape:?}"));
+            }
         }
     }
 }

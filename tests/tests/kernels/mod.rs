@@ -109,6 +109,6 @@ pub fn header(mesh: &Mesh, density: f32, fixed: [u32; 3]) -> GridHeader {
             }
         }
     }
-    let info = Configure { triangle_count: mesh.indices.len() as u32, cell_capacity: 1 << 28, density, fixed, exact: true };
+    let info = Configure { triangle_count: mesh.indices.len() as u32, cell_capacity: 1 << 28, density, fixed, splits: false, exact: true };
     configure_header(&info, &scene, [[0; 2]; 4]).0
 }

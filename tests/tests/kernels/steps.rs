@@ -4,14 +4,15 @@ use bytemuck::bytes_of;
 use gridwalk::plan::{Buffer, BuildInputs, Dispatch, Item, Source, Step, build_plan};
 use gridwalk::{BuildInfo, BuildOptions, Capacity, GeometryRecord, Overlap, Report};
 use gridwalk_core::layout::{BuildState, DispatchArguments, GridHeader};
-use gridwalk_core::twin::player::{Groups, Memory, PlayedStep};
+use gridwalk_core::split::refined;
+use gridwalk_core::twin::player::{Groups, Level, Memory, PlayedStep};
 use gridwalk_tests::gpu::{Built, CANARY, Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
 
 use super::devices;
 use crate::rebuild::records::{Scene, placed};
 
-const COMPARED: [Buffer; 19] = [
+const COMPARED: [Buffer; 22] = [
     Buffer::Header,
     Buffer::State,
     Buffer::Arguments,
@@ -31,6 +32,9 @@ const COMPARED: [Buffer; 19] = [
     Buffer::Occupancy,
     Buffer::DistancesX,
     Buffer::DistancesY,
+    Buffer::LeafState,
+    Buffer::LeafArguments,
+    Buffer::SplitCells,
 ];
 
 fn words(memory: &Memory, buffer: Buffer) -> &[u32] {
@@ -55,6 +59,9 @@ fn words(memory: &Memory, buffer: Buffer) -> &[u32] {
         Buffer::Occupancy => bytemuck::cast_slice(&memory.occupancy),
         Buffer::DistancesX => &memory.distances_x,
         Buffer::DistancesY => &memory.distances_y,
+        Buffer::LeafState => bytemuck::cast_slice(bytes_of(&memory.leaf_state)),
+        Buffer::LeafArguments => bytemuck::cast_slice(bytes_of(&memory.leaf_arguments)),
+        Buffer::SplitCells => bytemuck::cast_slice(&memory.split_cells),
         other => panic!("{other:?} is no memory of a build"),
     }
 }
@@ -79,8 +86,12 @@ fn adopt(gpu: &Gpu, built: &Built, memory: &mut Memory) {
             && (header.resolution != memory.header.resolution || (sizes[0] - sizes[1]).abs() <= 1e-6 * sizes[1])
     });
     assert!(close, "configure: device {header:?}, player {:?}", memory.header);
-    let GridHeader { cell_size, inverse_cell_size, resolution, cell_count, .. } = header;
-    assert_eq!(header, GridHeader { cell_size, inverse_cell_size, resolution, cell_count, ..memory.header });
+    let GridHeader { cell_size, inverse_cell_size, resolution, cell_count, fine_cell_size, inverse_fine_cell_size, .. } = header;
+    let adopted =
+        GridHeader { cell_size, inverse_cell_size, resolution, cell_count, fine_cell_size, inverse_fine_cell_size, ..memory.header };
+    assert_eq!(header, adopted);
+    let fine = refined(&header, header.fine_shift);
+    assert_eq!((fine.cell_size, fine.inverse_cell_size), (fine_cell_size, inverse_fine_cell_size));
     memory.header = header;
     if resolution != built_resolution(memory) {
         memory.state = built.part::<BuildState>(gpu, Buffer::State, 1)[0];
@@ -96,9 +107,12 @@ fn built_resolution(memory: &Memory) -> [u32; 3] {
 fn played<'a>(step: &Step, words: &'a [u32]) -> PlayedStep<'a> {
     let groups = match step.dispatch {
         Dispatch::Direct(groups) => Groups::Direct(groups),
-        Dispatch::Indirect(_, offset) => Groups::Indirect(offset),
+        Dispatch::Indirect(Buffer::LeafArguments, offset) => Groups::Indirect(Level::Second, offset),
+        Dispatch::Indirect(_, offset) => Groups::Indirect(Level::First, offset),
     };
-    PlayedStep { kernel: step.kernel.name, groups, words, exact: step.variant == 1 }
+    let of_leaves = (0..step.kernel.accesses.len()).any(|access| step.buffer(access) == Buffer::LeafState);
+    let level = if of_leaves { Level::Second } else { Level::First };
+    PlayedStep { kernel: step.kernel.name, groups, words, level, exact: step.variant == 1 }
 }
 
 /// Runs a build a step at a time and names the first step after which a buffer is not the player's.
@@ -117,7 +131,7 @@ fn first_wrong_step_of(gpu: &Gpu, built: &Built, source: Source, spoiled: Option
     let inputs = BuildInputs { source, density: options.density, resolution: options.resolution, exact: options.overlap == Overlap::Exact };
     let plan = build_plan(&capacity, &inputs, &shape);
     let bricks = gpu.tracer.build_region(&built.info, Buffer::Bricks).size / 16;
-    let sizes = [capacity.triangles, capacity.cells, capacity.pairs, bricks as u32];
+    let sizes = [capacity.triangles, capacity.cells, capacity.pairs, capacity.leaf_cells, bricks as u32];
     let mut memory = Memory::filled(CANARY, &shape, Vec::new(), Vec::new(), sizes);
     given(&mut memory);
     let addresses = [Buffer::Cells, Buffer::References, Buffer::Triangles, Buffer::Bricks].map(|buffer| {
@@ -151,9 +165,12 @@ fn every_step_of_a_build_is_the_players() {
         for overlap in [Overlap::Box, Overlap::Exact] {
             for density in [0.01, 2.0] {
                 let options = BuildOptions { density, overlap, ..BuildOptions::default() };
-                let capacity = Capacity { triangles: 4_000, cells: 10_000, pairs: 40_000 };
-                let wrong = first_wrong_step(gpu, &mesh, capacity, options, None);
-                assert_eq!(wrong, None, "{options:?} {:?}", gpu.tracer.shape());
+                // Flat, with room for some of the leaf cells, and for all.
+                for leaf_cells in [0, 3_000, 60_000] {
+                    let capacity = Capacity { triangles: 4_000, cells: 10_000, pairs: 160_000, leaf_cells };
+                    let wrong = first_wrong_step(gpu, &mesh, capacity, options, None);
+                    assert_eq!(wrong, None, "{leaf_cells}, {options:?} {:?}", gpu.tracer.shape());
+                }
             }
         }
     }
@@ -162,14 +179,16 @@ fn every_step_of_a_build_is_the_players() {
 #[test]
 fn every_step_of_special_builds_is_the_players() {
     let gpu = Gpu::shared();
-    let room = Capacity { triangles: 3_000, cells: 5_000, pairs: 30_000 };
+    let room = Capacity { triangles: 3_000, cells: 5_000, pairs: 90_000, leaf_cells: 100_000 };
     let options = BuildOptions::default();
     let cases = [
         ("empty", soup(0, 0.0, 0), room, options),
         ("one triangle", soup(1, 0.5, 1), room, options),
-        ("no capacity", soup(0, 0.0, 0), Capacity { triangles: 0, cells: 0, pairs: 0 }, options),
+        ("no capacity", soup(0, 0.0, 0), Capacity { triangles: 0, cells: 0, pairs: 0, leaf_cells: 0 }, options),
         ("too many pairs", soup(3_000, 0.2, 2), Capacity { pairs: 7_777, ..room }, options),
         ("too many cells", soup(3_000, 0.05, 3), Capacity { cells: 1_000, ..room }, options),
+        ("too many pairs of leaf cells", soup(3_000, 0.2, 2), Capacity { pairs: 50_000, ..room }, options),
+        ("split into 32 x 32 x 32", soup(3_000, 0.01, 6), room, BuildOptions { resolution: Some([1, 2, 1]), ..options }),
         ("fixed", soup(100, 0.3, 4), room, BuildOptions { resolution: Some([7, 30, 2]), ..options }),
         ("one cell", soup(500, 0.3, 5), room, BuildOptions { resolution: Some([1, 1, 1]), ..options }),
     ];
@@ -201,7 +220,7 @@ fn every_step_of_a_build_of_records_is_the_players() {
             .collect();
         // The last two have too little room, of triangles and of pairs.
         for (triangles, pairs) in [(20_000, 100_000), (5_000, 100_000), (9_000, 7_777)] {
-            let capacity = Capacity { triangles, cells: 20_000, pairs };
+            let capacity = Capacity { triangles, cells: 20_000, pairs, leaf_cells: 40_000 };
             let (built, _records) = scene.prepare(gpu, capacity, BuildOptions { density: 1.0, ..BuildOptions::default() });
             let source = Source::Records { record_count: scene.records.len() as u32 };
             let wrong = first_wrong_step_of(gpu, &built, source, None, |memory| {

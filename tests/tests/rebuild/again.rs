@@ -24,7 +24,7 @@ fn one_recording_many_submissions() {
     ];
     for overlap in [Overlap::Box, Overlap::Exact] {
         let options = BuildOptions { density: 2.0, overlap, ..BuildOptions::default() };
-        let capacity = Capacity { triangles: 3_000, cells: 8_000, pairs: 60_000 };
+        let capacity = Capacity { triangles: 3_000, cells: 8_000, pairs: 60_000, leaf_cells: 0 };
         let mut built = gpu.prepare(&first, capacity, options);
         let mut seen = Vec::new();
         gpu.submit_again(&mut built, frames.len() + 1, |built, time| {
@@ -76,7 +76,7 @@ fn the_same_input_gives_the_same_bytes() {
 fn builds_share_scratch() {
     let gpu = Gpu::shared();
     let meshes = [soup(3_000, 0.05, 44), soup(10, 0.5, 45), soup(2_000, 0.02, 46)];
-    let capacity = Capacity { triangles: 3_000, cells: 30_000, pairs: 60_000 };
+    let capacity = Capacity { triangles: 3_000, cells: 30_000, pairs: 60_000, leaf_cells: 0 };
     let options = BuildOptions { density: 4.0, ..BuildOptions::default() };
     let mut grids = meshes.each_ref().map(|mesh| gpu.prepare(mesh, capacity, options));
     let scratch = grids[0].info.scratch;

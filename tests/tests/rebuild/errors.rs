@@ -7,7 +7,7 @@ use gridwalk_tests::meshes::soup;
 #[test]
 fn capacities_beyond_the_limits() {
     let tracer = &Gpu::shared().tracer;
-    let small = Capacity { triangles: 1, cells: 1, pairs: 1 };
+    let small = Capacity { triangles: 1, cells: 1, pairs: 1, leaf_cells: 0 };
     assert!(tracer.build_sizes(&small).is_ok());
     for (what, limit, capacity) in [
         ("triangles", MAX_TRIANGLES, Capacity { triangles: MAX_TRIANGLES + 1, ..small }),
@@ -28,7 +28,7 @@ fn sizes_grow_with_capacities() {
     let tracer = &Gpu::shared().tracer;
     let mut last = (0, 0);
     for bits in 0..=26 {
-        let capacity = Capacity { triangles: 1 << bits, cells: 1 << (bits + 2), pairs: 1 << (bits + 2) };
+        let capacity = Capacity { triangles: 1 << bits, cells: 1 << (bits + 2), pairs: 1 << (bits + 2), leaf_cells: 0 };
         match tracer.build_sizes(&capacity) {
             Ok(sizes) => {
                 let next = (sizes.grid.size, sizes.scratch.size);

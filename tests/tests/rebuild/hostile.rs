@@ -73,7 +73,7 @@ fn a_triangle_that_covers_a_million_cells() {
     let mesh = Mesh::from_triangles(&triangles);
     for overlap in [Overlap::Box, Overlap::Exact] {
         let options = BuildOptions { resolution: Some([128, 128, 80]), overlap, ..BuildOptions::default() };
-        let built = gpu.build(&mesh, Capacity { triangles: 3, cells: 1 << 21, pairs: 1 << 21 }, options);
+        let built = gpu.build(&mesh, Capacity { triangles: 3, cells: 1 << 21, pairs: 1 << 21, leaf_cells: 0 }, options);
         assert_eq!(built.report.overflow, 0);
         assert!(built.report.pair_total > 1 << 20, "{:?}", built.report);
         check(gpu, &built, &mesh).unwrap_or_else(|error| panic!("{overlap:?}: {error}"));

@@ -5,7 +5,7 @@ use gridwalk::{BuildOptions, Overlap, Shape};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::gather::is_dropped;
 use gridwalk_core::grid::{brick_resolution, cell_id, cell_of};
-use gridwalk_core::layout::{Brick, GridHeader};
+use gridwalk_core::layout::{Brick, GridHeader, TileOccupancy};
 use gridwalk_core::twin::brick_distance_x::brick_distance_x;
 use gridwalk_core::twin::brick_distance_y::brick_distance_y;
 use gridwalk_core::twin::brick_distance_z::brick_distance_z;
@@ -179,16 +179,17 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
 }
 
 fn check_bricks(gpu: &Gpu, built: &Built, cells: &[[u32; 2]]) -> Result<(), String> {
-    let resolution = built.header().resolution;
+    let header = built.header();
+    let resolution = header.resolution;
     let count: u32 = brick_resolution(resolution).iter().product();
     let len = count as usize;
     let found: Vec<Brick> = built.part(gpu, Buffer::Bricks, len);
     let shape = Shape::CPU;
     let groups = split_workgroups(count, shape.map_size);
     let mut bricks = vec![Brick::default(); len];
-    let mut partials = vec![[0; 2]; len];
+    let mut partials = vec![TileOccupancy::default(); len];
     let (mut x, mut y) = (vec![0; len], vec![0; len]);
-    brick_reduce(&shape, split_workgroups(count, shape.brick_tile()), resolution, cells, &mut bricks, &mut partials);
+    brick_reduce(&shape, split_workgroups(count, shape.brick_tile()), &header, cells, &mut bricks, &mut partials);
     brick_distance_x(&shape, groups, resolution, &bricks, &mut x);
     brick_distance_y(&shape, groups, resolution, &x, &mut y);
     brick_distance_z(&shape, groups, resolution, &y, &mut bricks);
@@ -233,7 +234,7 @@ fn grids_of_fixed_resolutions() {
     for resolution in [[1, 1, 1], [2, 1, 1], [1, 1, 300], [16, 16, 16], [64, 3, 31], [5_000, 2, 1]] {
         for overlap in [Overlap::Box, Overlap::Exact] {
             let options = BuildOptions { resolution: Some(resolution), overlap, ..BuildOptions::default() };
-            let capacity = gridwalk::Capacity { triangles: 1_000, cells: 20_000, pairs: 1 << 20 };
+            let capacity = gridwalk::Capacity { triangles: 1_000, cells: 20_000, pairs: 1 << 20, leaf_cells: 0 };
             let built = gpu.build(&mesh, capacity, options);
             assert_eq!(built.report.resolution, resolution.map(|n| n.min(4096)));
             check(gpu, &built, &mesh).unwrap_or_else(|error| panic!("{resolution:?}, {overlap:?}: {error}"));
@@ -261,7 +262,7 @@ fn grids_of_triangles_on_boundaries() {
     for overlap in [Overlap::Box, Overlap::Exact] {
         for resolution in [[16; 3], [8, 4, 32]] {
             let options = BuildOptions { resolution: Some(resolution), overlap, ..BuildOptions::default() };
-            let capacity = gridwalk::Capacity { triangles: 601, cells: 4_096, pairs: 1 << 20 };
+            let capacity = gridwalk::Capacity { triangles: 601, cells: 4_096, pairs: 1 << 20, leaf_cells: 0 };
             let built = gpu.build(&mesh, capacity, options);
             assert_eq!((built.report.resolution, built.report.overflow), (resolution, 0));
             check(gpu, &built, &mesh).unwrap_or_else(|error| panic!("{resolution:?}, {overlap:?}: {error}"));
@@ -275,7 +276,7 @@ fn exact_overlap_is_nearly_exact() {
     let gpu = Gpu::shared();
     let mesh = soup(500, 0.4, 5);
     let options = |overlap| BuildOptions { resolution: Some([24, 24, 24]), overlap, ..BuildOptions::default() };
-    let capacity = gridwalk::Capacity { triangles: 500, cells: 14_000, pairs: 1 << 20 };
+    let capacity = gridwalk::Capacity { triangles: 500, cells: 14_000, pairs: 1 << 20, leaf_cells: 0 };
     let exact = gpu.build(&mesh, capacity, options(Overlap::Exact));
     let boxes = gpu.build(&mesh, capacity, options(Overlap::Box));
     let header = exact.header();

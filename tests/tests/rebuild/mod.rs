@@ -7,3 +7,4 @@ pub mod invariants;
 mod overflow;
 mod plan;
 pub mod records;
+mod second_level;

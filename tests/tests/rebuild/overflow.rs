@@ -33,7 +33,7 @@ fn too_many_pairs() {
     let mesh = soup(4_000, 0.1, 31);
     for overlap in [Overlap::Box, Overlap::Exact] {
         let options = BuildOptions { density: 4.0, overlap, ..BuildOptions::default() };
-        let room = Capacity { triangles: 4_000, cells: 40_000, pairs: 1 << 20 };
+        let room = Capacity { triangles: 4_000, cells: 40_000, pairs: 1 << 20, leaf_cells: 0 };
         let never = gpu.build(&mesh, room, options);
         assert_eq!(never.report.overflow, 0);
         for pairs in [0, 1, 1_000, never.report.pair_total - 1] {
@@ -55,7 +55,7 @@ fn a_build_after_an_overflow_is_sound() {
     let gpu = Gpu::shared();
     let large = soup(2_000, 0.3, 32);
     let small = soup(2_000, 0.01, 33);
-    let capacity = Capacity { triangles: 2_000, cells: 20_000, pairs: 20_000 };
+    let capacity = Capacity { triangles: 2_000, cells: 20_000, pairs: 20_000, leaf_cells: 0 };
     let mut built = gpu.build(&large, capacity, BuildOptions::default());
     assert!(built.report.pairs_overflowed());
     built.positions.write(0, &small.positions);
@@ -71,7 +71,7 @@ fn a_build_after_an_overflow_is_sound() {
 fn a_saturated_number_of_pairs() {
     let gpu = Gpu::shared();
     let mesh = Mesh::from_triangles(&vec![[[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], [1.0, -1.0, 0.0]]; 5_000]);
-    let capacity = Capacity { triangles: 5_000, cells: 1 << 20, pairs: 100_000 };
+    let capacity = Capacity { triangles: 5_000, cells: 1 << 20, pairs: 100_000, leaf_cells: 0 };
     for overlap in [Overlap::Box, Overlap::Exact] {
         let cells = |n| BuildOptions { resolution: Some([n; 3]), overlap, ..BuildOptions::default() };
         let built = gpu.build(&mesh, capacity, cells(100));
@@ -89,10 +89,11 @@ fn a_saturated_number_of_pairs() {
 fn too_many_cells() {
     let gpu = Gpu::shared();
     let mesh = soup(3_000, 0.05, 34);
-    let needed = gpu.build(&mesh, Capacity { triangles: 3_000, cells: 30_000, pairs: 1 << 18 }, BuildOptions::default()).report;
+    let needed =
+        gpu.build(&mesh, Capacity { triangles: 3_000, cells: 30_000, pairs: 1 << 18, leaf_cells: 0 }, BuildOptions::default()).report;
     assert_eq!((needed.overflow, needed.density), (0, 8.0));
     for cells in [0, 1, 2, 63, 1_000, 20_000] {
-        let capacity = Capacity { triangles: 3_000, cells, pairs: 1 << 18 };
+        let capacity = Capacity { triangles: 3_000, cells, pairs: 1 << 18, leaf_cells: 0 };
         let built = gpu.build(&mesh, capacity, BuildOptions::default());
         assert_eq!(built.report.overflow, OVERFLOW_CELLS, "{cells}");
         assert!(built.report.cells <= cells.max(1), "{cells}: {:?}", built.report);

@@ -19,7 +19,7 @@ fn builds() -> Vec<(String, Plan)> {
             let mesh = |triangle_count| Source::Mesh { triangle_count, vertex_count: 3 };
             let records = Source::Records { record_count: 7 };
             for (source, exact) in [(mesh(0), false), (mesh(1), true), (mesh(1_000_000), false), (records, true)] {
-                let capacity = Capacity { triangles: 1_000_000, cells: 1 << bits, pairs: 1_000 };
+                let capacity = Capacity { triangles: 1_000_000, cells: 1 << bits, pairs: 1_000, leaf_cells: 0 };
                 let inputs = BuildInputs { source, density: 8.0, resolution: None, exact };
                 plans.push((format!("2^{bits} cells, {inputs:?}, {shape:?}"), build_plan(&capacity, &inputs, &shape)));
             }
@@ -161,7 +161,7 @@ fn hazards_are_named() {
 fn plans_have_the_passes_of_their_capacity() {
     for shape in SHAPES {
         for bits in 0..=28u32 {
-            let capacity = Capacity { triangles: 1, cells: 1 << bits, pairs: 1 };
+            let capacity = Capacity { triangles: 1, cells: 1 << bits, pairs: 1, leaf_cells: 0 };
             let inputs =
                 BuildInputs { source: Source::Mesh { triangle_count: 1, vertex_count: 3 }, density: 8.0, resolution: None, exact: true };
             let plan = build_plan(&capacity, &inputs, &shape);

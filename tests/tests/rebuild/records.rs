@@ -226,7 +226,7 @@ fn counts_in_memory_change_between_submissions() {
     let counts = gpu.upload("counts", &[500u32, 20]);
     let at = counts.region().address;
     scene.records = vec![GeometryRecord { count: at, ..record }, GeometryRecord { count: at + 4, transform: far, ..record }];
-    let capacity = Capacity { triangles: 800, cells: 10_000, pairs: 40_000 };
+    let capacity = Capacity { triangles: 800, cells: 10_000, pairs: 40_000, leaf_cells: 0 };
     let (mut built, _records) = scene.prepare(gpu, capacity, BuildOptions::default());
     let changes = [[500, 20], [0, 0], [3, 497], [500, 500], [u32::MAX, 0], [7, 7]];
     let mut reports = Vec::new();
@@ -268,7 +268,7 @@ fn too_many_triangles_are_left_out() {
     let record = scene.mesh(gpu, &mesh);
     scene.records = vec![record, GeometryRecord { offset: [4.0, 0.0, 0.0], ..record }];
     for triangles in [2, 3, 999, 1_000, 1_001, 1_999] {
-        let capacity = Capacity { triangles, cells: 20_000, pairs: 60_000 };
+        let capacity = Capacity { triangles, cells: 20_000, pairs: 60_000, leaf_cells: 0 };
         let (mut built, records) = scene.prepare(gpu, capacity, BuildOptions::default());
         gpu.rebuild(&mut built);
         records.check();
@@ -284,7 +284,7 @@ fn too_many_triangles_are_left_out() {
 #[test]
 fn records_that_are_refused() {
     let gpu = Gpu::shared();
-    let capacity = Capacity { triangles: 100, cells: 100, pairs: 100 };
+    let capacity = Capacity { triangles: 100, cells: 100, pairs: 100, leaf_cells: 0 };
     let built = gpu.prepare(&Mesh::default(), capacity, BuildOptions::default());
     let memory = gpu.guarded("records", 128 * 100);
     let refused = |records: Region, count, triangles| {

@@ -176,7 +176,7 @@ fn all_hits_of_walks_that_are_continued() {
     let triangles: Vec<_> = (0..40_000).map(sheet).collect();
     let mesh = Mesh::from_triangles(&triangles);
     let options = BuildOptions { resolution: Some([1, 1, 2]), ..BuildOptions::default() };
-    let built = gpu.build(&mesh, gridwalk::Capacity { triangles: 40_000, cells: 8, pairs: 200_000 }, options);
+    let built = gpu.build(&mesh, gridwalk::Capacity { triangles: 40_000, cells: 8, pairs: 200_000, leaf_cells: 0 }, options);
     let rays = [
         rays::ray([0.01, 0.02, -1.0], [0.0, 0.0, 1.0]),
         rays::ray([0.01, 0.02, 2.0], [0.0, 0.0, -1.0]),

@@ -15,7 +15,7 @@ fn stack(gpu: &Gpu, count: u32) -> Built {
     indices[count as usize - 1] = [3, 4, 5];
     let mesh = Mesh { positions: [far, near].concat(), indices };
     let options = BuildOptions { resolution: Some([1, 1, 1]), ..BuildOptions::default() };
-    let built = gpu.build(&mesh, Capacity { triangles: count, cells: 64, pairs: count + 64 }, options);
+    let built = gpu.build(&mesh, Capacity { triangles: count, cells: 64, pairs: count + 64, leaf_cells: 0 }, options);
     assert_eq!((built.report.longest_list, built.report.overflow), (count, 0));
     built
 }

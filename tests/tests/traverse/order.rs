@@ -160,7 +160,7 @@ fn long_walks_go_on_in_an_order() {
     for (count, is_reported) in [(100_000, false), (300_000, true)] {
         let mesh = Mesh { positions: far.to_vec(), indices: vec![[0, 1, 2]; count] };
         let options = BuildOptions { resolution: Some([1, 1, 1]), ..BuildOptions::default() };
-        let capacity = Capacity { triangles: count as u32, cells: 64, pairs: count as u32 + 64 };
+        let capacity = Capacity { triangles: count as u32, cells: 64, pairs: count as u32 + 64, leaf_cells: 0 };
         let built = gpu.build(&mesh, capacity, options);
         // Every third hits, every third passes by within the box, every third outside of it.
         let ray = |index: u32| rays::ray([[0.0, 0.0, 0.0], [0.9, 0.9, 0.0], [5.0, 0.0, 0.0]][index as usize % 3], [0.0, 0.0, 1.0]);

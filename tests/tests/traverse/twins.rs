@@ -90,7 +90,7 @@ fn the_kernels_agree_with_their_twins() {
                     "{label}: ray {index} {:?} counts {counted:?}, twin {twin:?}",
                     rays[index]
                 );
-                let most: u32 = grid.header.resolution.iter().sum::<u32>() + 3;
+                let most = (grid.header.resolution.iter().sum::<u32>() << grid.header.fine_shift) + 3;
                 assert!(counted[0] <= most, "{label}: ray {index} {:?} takes {} steps of {most}", rays[index], counted[0]);
             }
             let occluded: Vec<_> = rays.par_iter().map(|ray| any(&grid, ray)).collect();
@@ -173,8 +173,8 @@ impl Invariant {
         let header = grid.header;
         let point = along(walk.ray.origin.map(f64::from), walk.ray.direction.map(f64::from), s);
         let beside = |axis: usize| {
-            let low = header.box_min[axis] + walk.low[axis] as f32 * header.cell_size[axis];
-            let high = header.box_min[axis] + walk.high[axis] as f32 * header.cell_size[axis];
+            let low = header.box_min[axis] + walk.low[axis] as f32 * header.fine_cell_size[axis];
+            let high = header.box_min[axis] + walk.high[axis] as f32 * header.fine_cell_size[axis];
             (f64::from(low) - point[axis]).max(point[axis] - f64::from(high)).max(0.0)
         };
         (0..3).map(beside).fold(0.0, f64::max) / (0.5 * f64::from(header.pad))

@@ -135,6 +135,10 @@ pub struct Common {
     #[arg(long)]
     pub overlap: Option<Overlap>,
 
+    /// Levels of the grid: 1 is the flat grid [default: the library's]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=2))]
+    pub levels: Option<u32>,
+
     /// Width and height of the camera's picture, a multiple of 8; as many other rays
     #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(8..=8192))]
     pub size: u32,

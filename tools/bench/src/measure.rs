@@ -33,6 +33,9 @@ pub fn settings(arguments: &Common) -> BuildSettings {
             Overlap::Exact => gridwalk::Overlap::Exact,
         };
     }
+    if let Some(levels) = arguments.levels {
+        settings.split = levels > 1;
+    }
     settings
 }
 
@@ -122,7 +125,8 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
 
     let stats = field.ours.grid().stats();
     let report = &stats.report;
-    let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs: report.pair_total };
+    let pairs = report.pair_total.max(report.pairs + report.leaf_pairs);
+    let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs, leaf_cells: report.leaf_cells };
     let fitted = field.ours.grid().tracer()?.build_sizes(&fitted).map_err(gridwalk_render::Error::from)?;
     let size = Size {
         triangles: report.triangles.into(),

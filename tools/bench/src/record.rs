@@ -19,7 +19,7 @@ const TIMES: usize = 500;
 /// What the device reports.
 pub fn measure(context: &Context, tracer: &Tracer) -> Result<(f64, f64)> {
     const RAYS: u32 = 1 << 16;
-    let capacity = Capacity { triangles: 1 << 16, cells: 1 << 20, pairs: 1 << 20 };
+    let capacity = Capacity { triangles: 1 << 16, cells: 1 << 20, pairs: 1 << 20, leaf_cells: 1 << 16 };
     let sizes = tracer.build_sizes(&capacity).map_err(gridwalk_render::Error::from)?;
     let scratch = tracer.trace_scratch_size(RAYS).map_err(gridwalk_render::Error::from)?;
     let buffer = |name, size| context.buffer(&BufferDesc { name, size, kind: BufferKind::Device, dedicated: false });

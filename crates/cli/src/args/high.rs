@@ -86,6 +86,7 @@ pub struct Grid {
     pub density: Option<f32>,
     pub resolution: Option<[u32; 3]>,
     pub overlap: Option<low::Overlap>,
+    pub levels: Option<u32>,
 }
 
 /// Which device.
@@ -538,7 +539,7 @@ fn overwrite(low: low::Overwrite) -> Overwrite {
 }
 
 pub fn grid(low: &low::Grid) -> Grid {
-    Grid { density: low.density, resolution: low.resolution, overlap: low.overlap }
+    Grid { density: low.density, resolution: low.resolution, overlap: low.overlap, levels: low.levels }
 }
 
 fn device(low: low::Device) -> Device {

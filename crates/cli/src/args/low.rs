@@ -124,6 +124,9 @@ pub struct Grid {
     /// List a triangle in the cells that its box touches, or that it touches itself
     #[arg(long, value_name = "TEST", help_heading = "Grid")]
     pub overlap: Option<Overlap>,
+    /// Levels of the grid: 1 is the flat grid of the thesis, with 2 cells of many triangles are split [default: 2]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2), help_heading = "Grid")]
+    pub levels: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -10,7 +10,8 @@ use crate::grid::brick_resolution;
 use crate::layout::{Bounds, BuildState, DispatchArguments, GridHeader, OVERFLOW_CELLS, Report};
 use crate::shape::Shape;
 use crate::sort::passes_of;
-use crate::vector::{Vec3, add, clamped_exponent, largest, max, max_f32, min, power_of_two, sub};
+use crate::split::{MAX_LEVEL, refined};
+use crate::vector::{Vec3, add, clamped_exponent, largest, max, max_f32, min, min_f32, power_of_two, sub};
 
 const MAX_RESOLUTION: f32 = 4096.0;
 /// 2^-20.
@@ -32,6 +33,8 @@ pub struct Configure {
     pub density: f32,
     /// A fixed resolution; the first is 0 without.
     pub fixed: [u32; 3],
+    /// Whether cells with many triangles are split.
+    pub splits: bool,
     /// Whether cells that only a triangle's box overlaps get the sentinel key.
     pub exact: bool,
 }
@@ -149,8 +152,17 @@ pub fn configure_header(info: &Configure, scene: &Bounds, addresses: [[u32; 2]; 
         triangles,
         bricks,
         middle,
-        reserved: 0,
+        fine_shift: 0,
+        fine_cell_size: cell_size,
+        reserved0: 0,
+        inverse_fine_cell_size: cell_size.map(|size| 1.0 / size),
+        reserved1: 0,
     };
+    let least = min_f32(cell_size[0], min_f32(cell_size[1], cell_size[2]));
+    let large_enough = |level: &u32| least >= (1u32 << level) as f32 * (MIN_CELL_IN_PADS * pad);
+    let fine_shift = if info.splits { (1..=MAX_LEVEL).filter(large_enough).max().unwrap_or(0) } else { 0 };
+    let fine = refined(&header, fine_shift);
+    let header = GridHeader { fine_shift, fine_cell_size: fine.cell_size, inverse_fine_cell_size: fine.inverse_cell_size, ..header };
     (header, density, overflow)
 }
 
@@ -193,5 +205,9 @@ pub fn configure_state(
         density,
         box_max: if empty { [0.0; 3] } else { scene.high },
         triangle_total: state.triangle_total,
+        split_cells: 0,
+        leaf_cells: 0,
+        leaf_pairs: 0,
+        reserved: 0,
     };
 }

@@ -1,7 +1,7 @@
 //! Kernel `nearest_hits`: the nearest hits of each ray, in order of distance, then of triangle.
 
 use crate::intersect::{Intersection, hit_distance, intersect_triangle, move_ray};
-use crate::layout::WalkState;
+use crate::layout::{WALK_FINE, WalkState};
 use crate::ray::{Hit, MISS, Ray, UNFINISHED};
 use crate::twin::closest_hit::Launch;
 use crate::walk::{
@@ -76,7 +76,7 @@ pub fn nearest_hits_of(grid: &Grid, ray: &Ray, hits: &mut [Hit], saved: &mut Wal
     if launch.continues && saved.given_up == 0 {
         return false;
     }
-    let found = if launch.continues { saved.given_up as usize - 1 } else { 0 };
+    let found = if launch.continues { (saved.given_up & ((1 << WALK_FINE) - 1)) as usize - 1 } else { 0 };
     let before = match (found, launch.resume) {
         (0, false) => None,
         (0, true) => hits.last().map(|hit| hit.triangle),
@@ -101,7 +101,8 @@ pub fn nearest_hits_of(grid: &Grid, ray: &Ray, hits: &mut [Hit], saved: &mut Wal
         if given_up && launch.last {
             rest = UNFINISHED;
         } else if given_up {
-            *saved = WalkState { given_up: search.found as u32 + 1, ..walk_save(&walk, grid) };
+            *saved = walk_save(&walk, grid);
+            saved.given_up += search.found as u32;
         }
     }
     if !given_up || launch.last {

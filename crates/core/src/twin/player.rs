@@ -13,6 +13,8 @@ use super::configure::{Configure, configure_header, configure_state};
 use super::gather::gather;
 use super::gather_records::gather_records;
 use super::geometry_scan::geometry_scan;
+use super::leaf_args::leaf_args;
+use super::leaf_count::{Leaves, leaf_count, leaf_emit};
 use super::overlap_count::overlap_count;
 use super::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
 use super::pair_args::pair_args;
@@ -22,21 +24,32 @@ use super::scan_reduce::scan_reduce;
 use super::scan_spine::scan_spine;
 use super::sort_histogram::sort_histogram;
 use super::sort_scatter::{Pairs, sort_scatter};
+use super::split_cells::split_cells;
 use crate::geometry::{AddressedMemory, GeometryRecord};
-use crate::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, Report};
+use crate::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, LeafArguments, Report, SplitCell, TileOccupancy};
 use crate::shape::Shape;
 use crate::sort::writes_a;
+use crate::split::LEAST_SPLIT;
 
 /// Which scan leaves its sum as the number of pairs that are kept.
 const SCAN_FIRST_TABLE: u32 = 2;
+
+/// Which of the two states a step takes its numbers from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// Cells.
+    First,
+    /// Leaf cells.
+    Second,
+}
 
 /// The number of workgroups of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Groups {
     /// Given.
     Direct([u32; 3]),
-    /// At a byte offset into the arguments.
-    Indirect(u64),
+    /// At a byte offset into a level's arguments.
+    Indirect(Level, u64),
 }
 
 /// A step of a plan, as the twins see it.
@@ -48,6 +61,8 @@ pub struct PlayedStep<'a> {
     pub groups: Groups,
     /// Push constants after the addresses.
     pub words: &'a [u32],
+    /// Whose numbers of pairs and keys the step reads.
+    pub level: Level,
     /// Whether the step runs the kernel's exact variant.
     pub exact: bool,
 }
@@ -78,9 +93,19 @@ pub struct Memory {
     pub keys_b: Vec<u32>,
     pub values_a: Vec<u32>,
     pub table: Vec<u32>,
-    pub occupancy: Vec<[u32; 2]>,
+    pub occupancy: Vec<TileOccupancy>,
     pub distances_x: Vec<u32>,
     pub distances_y: Vec<u32>,
+    pub leaf_state: BuildState,
+    pub leaf_arguments: LeafArguments,
+    pub split_cells: Vec<SplitCell>,
+}
+
+fn level_state<'a>(level: Level, first: &'a mut BuildState, second: &'a mut BuildState) -> &'a mut BuildState {
+    match level {
+        Level::First => first,
+        Level::Second => second,
+    }
 }
 
 fn filled<T: Pod>(word: u32) -> T {
@@ -92,18 +117,25 @@ fn filled<T: Pod>(word: u32) -> T {
 }
 
 impl Memory {
-    /// Memory for a geometry and for `triangles`, `cells`, `pairs` and `bricks` at most, of which every word is `word`.
-    pub fn filled(word: u32, shape: &Shape, positions: Vec<f32>, indices: Vec<u32>, [triangles, cells, pairs, bricks]: [u32; 4]) -> Memory {
+    /// Memory for a geometry and for `triangles`, `cells`, `pairs`, `leaf_cells` and `bricks` at most, of which every word is `word`.
+    pub fn filled(
+        word: u32,
+        shape: &Shape,
+        positions: Vec<f32>,
+        indices: Vec<u32>,
+        [triangles, cells, pairs, leaf_cells, bricks]: [u32; 5],
+    ) -> Memory {
         let table = shape.table_entries(pairs) as usize;
         let (cells, pairs) = (cells.max(1), pairs.max(1) as usize);
         let offsets = triangles as usize + 1;
+        let split_cells = if leaf_cells > 0 { pairs / LEAST_SPLIT as usize } else { 0 };
         Memory {
             positions,
             indices,
             records: Vec::new(),
             addressed: AddressedMemory::default(),
             header: filled(word),
-            cells: vec![[word; 2]; cells.next_multiple_of(CELLS_EACH) as usize],
+            cells: vec![[word; 2]; (cells.next_multiple_of(CELLS_EACH) + leaf_cells) as usize],
             references: vec![word; pairs],
             triangles: vec![filled(word); 3 * triangles.max(1) as usize],
             bricks: vec![filled(word); bricks as usize],
@@ -114,14 +146,17 @@ impl Memory {
             bounds_partials: vec![filled(word); shape.bounds_tiles(triangles) as usize],
             offsets: vec![word; offsets],
             cell_masks: vec![word; triangles.max(1) as usize],
-            scan_partials: vec![word; offsets.max(table).div_ceil(shape.scan_tile() as usize)],
-            keys_a: vec![word; pairs],
+            scan_partials: vec![word; offsets.max(table).max(pairs + 1).div_ceil(shape.scan_tile() as usize)],
+            keys_a: vec![word; pairs + 1],
             keys_b: vec![word; pairs],
             values_a: vec![word; pairs],
             table: vec![word; table.max(1)],
-            occupancy: vec![[word; 2]; bricks.div_ceil(shape.brick_tile()) as usize],
+            occupancy: vec![filled(word); bricks.div_ceil(shape.brick_tile()) as usize],
             distances_x: vec![word; bricks as usize],
             distances_y: vec![word; bricks as usize],
+            leaf_state: filled(word),
+            leaf_arguments: filled(word),
+            split_cells: vec![filled(word); split_cells.max(1)],
         }
     }
 
@@ -132,9 +167,12 @@ impl Memory {
     pub fn play<'a>(&mut self, shape: &Shape, step: &PlayedStep<'a>, addresses: [[u32; 2]; 4]) -> Result<(), &'a str> {
         let groups = match step.groups {
             Groups::Direct(groups) => groups,
-            Groups::Indirect(offset) => {
+            Groups::Indirect(level, offset) => {
                 let mut groups = <[u32; 3]>::zeroed();
-                let words: &[u32] = bytemuck::cast_slice(bytes_of(&self.arguments));
+                let words: &[u32] = match level {
+                    Level::First => bytemuck::cast_slice(bytes_of(&self.arguments)),
+                    Level::Second => bytemuck::cast_slice(bytes_of(&self.leaf_arguments)),
+                };
                 groups.copy_from_slice(&words[offset as usize / 4..][..3]);
                 groups
             }
@@ -144,7 +182,7 @@ impl Memory {
         }
         let words = step.words;
         let GridHeader { cell_count, resolution, .. } = self.header;
-        let BuildState { triangle_count, pair_count, kept_count, .. } = self.state;
+        let BuildState { triangle_count, pair_count, .. } = self.state;
         match step.kernel {
             "gather" => {
                 let (triangles, state, partials) = (&mut self.triangles, &mut self.state, &mut self.bounds_partials);
@@ -165,7 +203,8 @@ impl Memory {
                     cell_capacity: words[0],
                     density: f32::from_bits(words[1]),
                     fixed: [words[2], words[3], words[4]],
-                    exact: words[5] != 0,
+                    splits: words[5] > 1,
+                    exact: words[6] != 0,
                 };
                 let (header, density, overflow) = configure_header(&info, &self.scene_bounds, addresses);
                 self.header = header;
@@ -178,9 +217,11 @@ impl Memory {
                 overlap_count(shape, groups, step.exact, &self.header, &mut self.state, triangles, counts, masks);
             }
             "scan_reduce" | "scan_spine" | "scan_downsweep" => {
-                let (length, values) = match words[0] {
-                    0 => (self.state.offset_count, &mut self.offsets),
-                    _ => (self.state.table_count, &mut self.table),
+                let state = level_state(step.level, &mut self.state, &mut self.leaf_state);
+                let (length, values) = match (words[0], step.level) {
+                    (0, Level::First) => (state.offset_count, &mut self.offsets),
+                    (0, Level::Second) => (state.offset_count, &mut self.keys_a),
+                    _ => (state.table_count, &mut self.table),
                 };
                 let partials = &mut self.scan_partials;
                 match step.kernel {
@@ -188,7 +229,7 @@ impl Memory {
                     "scan_spine" => {
                         let sum = scan_spine(shape, length, partials);
                         if words[0] == SCAN_FIRST_TABLE {
-                            self.state.kept_count = sum;
+                            state.kept_count = sum;
                         }
                     }
                     _ => scan_downsweep(shape, groups, length, partials, values),
@@ -212,19 +253,65 @@ impl Memory {
                 }
             }
             "sort_histogram" => {
-                let keys = if writes_a(self.state.pass_count, words[0]) { &self.keys_a } else { &self.keys_b };
-                sort_histogram(shape, groups, &self.state, keys, &mut self.table, words[0]);
+                let state = *level_state(step.level, &mut self.state, &mut self.leaf_state);
+                let keys = if writes_a(state.pass_count, words[0]) { &self.keys_a } else { &self.keys_b };
+                sort_histogram(shape, groups, &state, keys, &mut self.table, words[0]);
             }
             "sort_scatter" => {
                 let a = (&mut self.keys_a, &mut self.values_a);
                 let b = (&mut self.keys_b, &mut self.references);
-                let (from, to) = if writes_a(self.state.pass_count, words[0]) { (a, b) } else { (b, a) };
+                let state = *level_state(step.level, &mut self.state, &mut self.leaf_state);
+                let (from, to) = if writes_a(state.pass_count, words[0]) { (a, b) } else { (b, a) };
                 let pairs = Pairs { keys: from.0.as_slice(), values: from.1.as_slice() };
-                sort_scatter(shape, groups, &self.state, &pairs, to.0, to.1, &self.table, words[0]);
+                sort_scatter(shape, groups, &state, &pairs, to.0, to.1, &self.table, words[0]);
             }
-            "cell_ranges" => cell_ranges(shape, groups, cell_count, kept_count, &self.keys_b, &mut self.cells, &mut self.report),
-            "brick_reduce" => brick_reduce(shape, groups, resolution, &self.cells, &mut self.bricks, &mut self.occupancy),
-            "report_spine" => report_spine(shape, resolution, &self.occupancy, &mut self.report),
+            "cell_ranges" => {
+                let state = *level_state(step.level, &mut self.state, &mut self.leaf_state);
+                cell_ranges(shape, groups, &state, &self.keys_b, &mut self.cells, &mut self.report);
+            }
+            "brick_reduce" => brick_reduce(shape, groups, &self.header, &self.cells, &mut self.bricks, &mut self.occupancy),
+            "report_spine" => {
+                let (leaf_state, arguments) = (&mut self.leaf_state, &mut self.leaf_arguments);
+                let (partials, report) = (&mut self.occupancy, &mut self.report);
+                report_spine(shape, &self.header, &self.state, partials, leaf_state, arguments, report, words[0]);
+            }
+            "split_cells" => {
+                let least = self.leaf_state.least_split;
+                split_cells(shape, groups, &self.header, least, &self.cells, &self.occupancy, &mut self.split_cells, words[0]);
+            }
+            "leaf_count" => {
+                let leaves = Leaves {
+                    grid: &self.header,
+                    state: &self.leaf_state,
+                    split_cells: &self.split_cells,
+                    triangles: &self.triangles,
+                    exact: step.exact,
+                };
+                let (counts, masks) = (&mut self.keys_a, &mut self.keys_b);
+                leaf_count(shape, groups, &leaves, &self.references, counts, masks, &mut self.cells);
+            }
+            "leaf_args" => {
+                let (state, arguments, report) = (&mut self.leaf_state, &mut self.leaf_arguments, &mut self.report);
+                leaf_args(shape, state, &self.keys_a, arguments, report, words[0], words[1]);
+            }
+            "leaf_emit" => {
+                let leaves = Leaves {
+                    grid: &self.header,
+                    state: &self.leaf_state,
+                    split_cells: &self.split_cells,
+                    triangles: &self.triangles,
+                    exact: step.exact,
+                };
+                let pairs = leaf_emit(shape, groups, &leaves, &self.references, &mut self.cells);
+                let (keys, values) = match writes_a(self.leaf_state.pass_count, 0) {
+                    true => (&mut self.keys_a, &mut self.values_a),
+                    false => (&mut self.keys_b, &mut self.references),
+                };
+                for (pair, (key, value)) in (self.leaf_state.first_pair as usize..).zip(pairs) {
+                    keys[pair] = key;
+                    values[pair] = value;
+                }
+            }
             "brick_distance_x" => brick_distance_x(shape, groups, resolution, &self.bricks, &mut self.distances_x),
             "brick_distance_y" => brick_distance_y(shape, groups, resolution, &self.distances_x, &mut self.distances_y),
             "brick_distance_z" => brick_distance_z(shape, groups, resolution, &self.distances_y, &mut self.bricks),

@@ -28,9 +28,10 @@ pub fn sort_scatter(
     let (pair_count, bits) = (pairs_of(state, pass), state.digit_bits);
     let tile_size = shape.sort_tile() as usize;
     let tile_count = pair_count.div_ceil(shape.sort_tile());
-    let tiles = pairs.keys[..pair_count as usize].chunks(tile_size).zip(pairs.values.chunks(tile_size));
+    let first = state.first_pair as usize;
+    let tiles = pairs.keys[first..][..pair_count as usize].chunks(tile_size).zip(pairs.values[first..].chunks(tile_size));
     for (tile, (keys, values)) in sort_tiles(shape, groups).zip(tiles) {
-        let mut next: Vec<u32> = (0..1u32 << bits).map(|digit| table[(digit * tile_count + tile) as usize]).collect();
+        let mut next: Vec<u32> = (0..1u32 << bits).map(|digit| state.first_pair + table[(digit * tile_count + tile) as usize]).collect();
         for (key, value) in keys.iter().zip(values).filter(|(key, _)| **key != state.sentinel) {
             let destination = &mut next[digit_of(*key, pass, bits) as usize];
             keys_out[*destination as usize] = *key;

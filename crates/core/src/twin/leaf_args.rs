@@ -1,0 +1,41 @@
+//! Twin of kernel `leaf_args`.
+
+use super::pair_args::four;
+use crate::dispatch::split_workgroups;
+use crate::layout::{BuildState, LeafArguments, OVERFLOW_LEAVES, Report};
+use crate::shape::Shape;
+
+/// Turns the number of the second level's pairs into the sizes of the steps that follow. If they do not fit, cells stay whole.
+pub fn leaf_args(
+    shape: &Shape,
+    state: &mut BuildState,
+    offsets: &[u32],
+    arguments: &mut LeafArguments,
+    report: &mut Report,
+    pair_capacity: u32,
+    pass_capacity: u32,
+) {
+    let references = state.offset_count - 1;
+    let total = if references > 0 { offsets[references as usize] } else { 0 };
+    let fits = total <= pair_capacity - state.first_pair;
+    let count = if fits { total } else { 0 };
+    let tiles = count.div_ceil(shape.sort_tile());
+    state.pair_total = total;
+    state.pair_count = count;
+    state.kept_count = count;
+    state.table_count = tiles << state.digit_bits;
+    if !fits {
+        report.overflow |= OVERFLOW_LEAVES;
+        report.pair_total = report.pair_total.max(state.first_pair.saturating_add(total));
+    }
+    report.leaf_pairs = count;
+    arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
+    arguments.cell_ranges = four(split_workgroups(count, shape.map_size));
+    for pass in 0..pass_capacity as usize {
+        let used = (pass as u32) < state.pass_count && count > 0;
+        let groups = |groups| if used { four(groups) } else { [0; 4] };
+        arguments.sort[pass] = groups(split_workgroups(tiles, shape.sort_tiles()));
+        arguments.table_scan[pass] = groups(split_workgroups(state.table_count, shape.scan_tile()));
+        arguments.table_spine[pass] = groups([1, 1, 1]);
+    }
+}

@@ -1,0 +1,100 @@
+//! Twins of kernels `leaf_count` and `leaf_emit`.
+
+use crate::grid::cell_id;
+use crate::layout::{BuildState, CELL_SPLIT, GridHeader, SplitCell};
+use crate::overlap::{CellBox, SMALL_BOX, SeparatingAxes};
+use crate::shape::Shape;
+use crate::split::{leaf_box, leaf_count_of, refined};
+use crate::vector::Vec3;
+
+/// What both kernels read.
+#[derive(Clone, Copy, Debug)]
+pub struct Leaves<'a> {
+    /// Head of the grid.
+    pub grid: &'a GridHeader,
+    /// Of the second level.
+    pub state: &'a BuildState,
+    /// Records of the cells that are to be split.
+    pub split_cells: &'a [SplitCell],
+    /// In the grid's frame.
+    pub triangles: &'a [[f32; 4]],
+    /// Whether a triangle that misses a leaf cell is left out of its list.
+    pub exact: bool,
+}
+
+/// A reference of a split cell.
+struct Listed<'a> {
+    split: &'a SplitCell,
+    place: u32,
+}
+
+impl Leaves<'_> {
+    fn listed(&self, reference: u32) -> Listed<'_> {
+        let records = &self.split_cells[..self.state.split_cells as usize];
+        let split = &records[records.partition_point(|split| split.first_reference <= reference) - 1];
+        Listed { split, place: reference - split.first_reference }
+    }
+
+    /// The box of leaf cells, and those that the triangle overlaps.
+    fn overlapped(&self, split: &SplitCell, triangle: u32) -> Option<(CellBox, Vec<u32>)> {
+        let fine = refined(self.grid, split.level);
+        let v: [Vec3; 3] = std::array::from_fn(|i| {
+            let [x, y, z, _] = self.triangles[3 * triangle as usize + i];
+            [x, y, z]
+        });
+        let (cells, test) = leaf_box(&fine, split, self.exact, v)?;
+        let axes = SeparatingAxes::new(&fine, v, cells.low);
+        let overlapped = (0..cells.count()).filter(|n| !test || axes.meets(cells.cell(*n))).collect();
+        Some((cells, overlapped))
+    }
+
+    fn covered(&self, shape: &Shape, groups: [u32; 3]) -> std::ops::Range<u32> {
+        0..(groups[0] * groups[1] * shape.map_size).min(self.state.offset_count - 1)
+    }
+}
+
+/// Counts the leaf cells that each triangle of a split cell overlaps, and empties the leaf cells.
+#[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
+pub fn leaf_count(
+    shape: &Shape,
+    groups: [u32; 3],
+    leaves: &Leaves,
+    references: &[u32],
+    counts: &mut [u32],
+    masks: &mut [u32],
+    cells: &mut [[u32; 2]],
+) {
+    counts[leaves.state.offset_count as usize - 1] = 0;
+    for reference in leaves.covered(shape, groups) {
+        let Listed { split, place } = leaves.listed(reference);
+        if place == 0 && split.level != 0 {
+            let first = (leaves.state.first_cell + split.leaf_begin) as usize;
+            cells[first..first + leaf_count_of(split.level) as usize].fill([0, 0]);
+        }
+        let overlapped = leaves.overlapped(split, references[(split.list_begin + place) as usize]);
+        let (count, mask) = overlapped.map_or((0, 0), |(cells, overlapped)| {
+            let small = cells.count() <= SMALL_BOX;
+            let mask = overlapped.iter().filter(|_| small).fold(0, |mask, n| mask | 1 << n);
+            (overlapped.len() as u32, mask)
+        });
+        counts[reference as usize] = count;
+        masks[reference as usize] = mask;
+    }
+}
+
+/// Pairs (leaf cell, triangle) in order, and the cells that are split. The first pair is the state's `first_pair`.
+pub fn leaf_emit(shape: &Shape, groups: [u32; 3], leaves: &Leaves, references: &[u32], cells: &mut [[u32; 2]]) -> Vec<(u32, u32)> {
+    let mut pairs = Vec::new();
+    for reference in leaves.covered(shape, groups) {
+        let Listed { split, place } = leaves.listed(reference);
+        if place == 0 && split.level != 0 {
+            cells[split.cell as usize] = [leaves.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level];
+        }
+        let triangle = references[(split.list_begin + place) as usize];
+        for (cells, n) in leaves.overlapped(split, triangle).into_iter().flat_map(|(cells, all)| all.into_iter().map(move |n| (cells, n))) {
+            let local = cells.cell(n).map(|i| i & ((1 << split.level) - 1));
+            pairs.push((split.leaf_begin + cell_id(local, [1 << split.level; 3]), triangle));
+        }
+    }
+    pairs
+}

@@ -1,0 +1,48 @@
+//! Twin of kernel `split_cells`.
+
+use super::brick_reduce::cells_of_brick;
+use crate::dispatch::workgroups;
+use crate::grid::{brick_resolution, cell_id};
+use crate::layout::{GridHeader, SplitCell, TileOccupancy};
+use crate::shape::Shape;
+use crate::split::{LEAST_SPLIT, leaf_count_of, leaf_level};
+
+/// Writes a record of each cell that is to be split: with at least `least` triangles.
+#[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
+pub fn split_cells(
+    shape: &Shape,
+    groups: [u32; 3],
+    grid: &GridHeader,
+    least: u32,
+    cells: &[[u32; 2]],
+    partials: &[TileOccupancy],
+    records: &mut [SplitCell],
+    leaf_capacity: u32,
+) {
+    let count: u32 = brick_resolution(grid.resolution).iter().product();
+    for tile in workgroups(groups) {
+        let first = tile * shape.brick_tile();
+        if first >= count || partials[tile as usize].split_cells[usize::from(least != LEAST_SPLIT)] == 0 {
+            continue;
+        }
+        let TileOccupancy { cells_before: mut record, references_before: mut first_reference, leaves_before: mut leaf_begin, .. } =
+            partials[tile as usize];
+        for (_, cell) in (first..count.min(first + shape.brick_tile())).flat_map(|index| cells_of_brick(grid.resolution, index)) {
+            let id = cell_id(cell, grid.resolution);
+            let [list_begin, end] = cells[id as usize];
+            let list_length = end - list_begin;
+            let level = leaf_level(list_length, least, grid.fine_shift);
+            if level == 0 {
+                continue;
+            }
+            let leaf_end = leaf_begin.saturating_add(leaf_count_of(level));
+            let level = if leaf_end <= leaf_capacity { level } else { 0 };
+            let [x, y, z] = cell;
+            records[record as usize] =
+                SplitCell { first_reference, list_begin, list_length, leaf_begin, cell: id, level, xy: x | y << 16, z };
+            record += 1;
+            first_reference += list_length;
+            leaf_begin = leaf_end;
+        }
+    }
+}

@@ -1,0 +1,72 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// Writes a record of each cell that is to be split: where its references and its leaf cells begin among those of all split cells.
+
+#include "shared/occupancy.glsl"
+
+layout(constant_id = 1) const uint BRICKS_EACH = 4;
+
+layout(push_constant, std430) uniform SplitCells {
+    GridwalkGrid grid;
+    StateIn state; // of the second level
+    Cells cells;
+    OccupancyIn partials;
+    SplitCellsOut split_cells;
+    uint leaf_capacity;
+};
+
+void main() {
+    uvec3 resolution = grid.header.resolution;
+    uvec3 bricks_along = brick_resolution(resolution);
+    uint brick_count = bricks_along.x * bricks_along.y * bricks_along.z;
+    uint most = grid.header.fine_shift;
+    uint least = state.state.least_split;
+    uint which = least == LEAST_SPLIT ? 0u : 1u;
+    uint tile = workgroup_index();
+    uint first = (tile * gl_WorkGroupSize.x + gl_LocalInvocationID.x) * BRICKS_EACH;
+    TileOccupancy occupancy = NOTHING;
+    if (tile * gl_WorkGroupSize.x * BRICKS_EACH < brick_count) {
+        occupancy = partials.tile[tile];
+    }
+    uint last = occupancy.split_cells[which] > 0u ? min(first + BRICKS_EACH, brick_count) : first;
+    uint records = 0u;
+    uint references = 0u;
+    uint leaves = 0u;
+    for (uint index = first; index < last; ++index) {
+        BrickCells brick = brick_cells(index, resolution);
+        for (uint i = 0u; i < brick.size.x * brick.size.y * brick.size.z; ++i) {
+            uint row = i / brick.size.x;
+            uvec3 cell = brick.low + uvec3(i - row * brick.size.x, row % brick.size.y, row / brick.size.y);
+            uvec2 range = cells.range[cell_id(cell, resolution)];
+            uint level = leaf_level(range.y - range.x, least, most);
+            records += uint(level != 0u);
+            references += level != 0u ? range.y - range.x : 0u;
+            leaves += level != 0u ? leaf_count_of(level) : 0u;
+        }
+    }
+    uint total;
+    uint record = occupancy.cells_before + workgroup_exclusive_scan(records, total);
+    uint reference = occupancy.references_before + workgroup_exclusive_scan(references, total);
+    uint leaf = saturating_add(occupancy.leaves_before, workgroup_exclusive_scan(leaves, total));
+    for (uint index = first; index < last && records > 0u; ++index) {
+        BrickCells brick = brick_cells(index, resolution);
+        for (uint i = 0u; i < brick.size.x * brick.size.y * brick.size.z; ++i) {
+            uint row = i / brick.size.x;
+            uvec3 cell = brick.low + uvec3(i - row * brick.size.x, row % brick.size.y, row / brick.size.y);
+            uint id = cell_id(cell, resolution);
+            uvec2 range = cells.range[id];
+            uint length = range.y - range.x;
+            uint level = leaf_level(length, least, most);
+            if (level != 0u) {
+                uint end = saturating_add(leaf, leaf_count_of(level));
+                split_cells.cell[record] = SplitCell(reference, range.x, length, leaf, id, end <= leaf_capacity ? level : 0u, cell.x | cell.y << 16u, cell.z);
+                record += 1u;
+                reference += length;
+                leaf = end;
+            }
+        }
+    }
+}

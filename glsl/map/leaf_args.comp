@@ -1,0 +1,51 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// One invocation turns the number of the second level's pairs into the sizes of the steps that follow. If they do not fit, cells stay whole.
+
+#include "shared/build.glsl"
+
+layout(local_size_x = 1) in;
+
+layout(constant_id = 1) const uint MAP_SIZE = 64;
+layout(constant_id = 2) const uint SORT_TILE = 8192;
+layout(constant_id = 3) const uint SCAN_TILE = 4096;
+layout(constant_id = 4) const uint SORT_TILES = 1; // tiles a workgroup of the sort
+
+layout(push_constant, std430) uniform LeafArgs {
+    StateInOut state; // of the second level
+    UintsIn offsets;
+    LeafArgumentsInOut arguments;
+    ReportInOut report;
+    uint pair_capacity;
+    uint pass_capacity; // passes recorded; the capacity of leaf cells admits no more
+};
+
+void main() {
+    uint references = state.state.offset_count - 1u;
+    uint total = references > 0u ? offsets.word[references] : 0u;
+    bool fits = total <= pair_capacity - state.state.first_pair;
+    uint count = fits ? total : 0u;
+    uint tiles = (count + SORT_TILE - 1u) / SORT_TILE;
+    uint table_count = tiles << state.state.digit_bits;
+    state.state.pair_total = total;
+    state.state.pair_count = count;
+    state.state.kept_count = count;
+    state.state.table_count = table_count;
+    if (!fits) {
+        report.report.overflow |= OVERFLOW_LEAVES;
+        report.report.pair_total = max(report.report.pair_total, saturating_add(state.state.first_pair, total));
+    }
+    report.report.leaf_pairs = count;
+
+    arguments.arguments.emit = count > 0u ? arguments.arguments.count : uvec4(0u);
+    arguments.arguments.cell_ranges = uvec4(split_workgroups(count, MAP_SIZE), 0u);
+    for (uint pass = 0u; pass < pass_capacity; ++pass) {
+        bool used = pass < state.state.pass_count && count > 0u;
+        arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, SORT_TILES), 0u) : uvec4(0u);
+        arguments.arguments.table_scan[pass] = used ? uvec4(split_workgroups(table_count, SCAN_TILE), 0u) : uvec4(0u);
+        arguments.arguments.table_spine[pass] = used ? uvec4(1u, 1u, 1u, 0u) : uvec4(0u);
+    }
+}

@@ -1,0 +1,49 @@
+// The second level (Kalojanov, Billeter and Slusallek 2011): a cell with many triangles is split into 2^level leaf cells along each axis,
+// which have lists of their own. Boundaries of leaf cells are those of a grid that is finer by a power of two: where they coincide with
+// boundaries of cells they are the same bits.
+#ifndef SPLIT_GLSL
+#define SPLIT_GLSL
+
+#include "shared/grid.glsl"
+
+const uint MAX_LEVEL = 5u;
+
+// Triangles of a list from which on its cell is split: more where lists are long all over, since it is those far longer than the others
+// that rays wait for.
+const uint LEAST_SPLIT = 24u;
+const uint LEAST_SPLIT_OF_LONG = 64u;
+// Mean length of a grid's lists from which on they are long.
+const uint LONG_LISTS = 6u;
+
+// The level of a cell that is split, by the length of its list: a surface that crosses it meets about 2 x 4^level of its leaf cells.
+uint leaf_level(uint count, uint least, uint most) {
+    uint level = uint(count >= 24u) + uint(count >= 48u) + uint(count >= 128u) + uint(count >= 320u) + uint(count >= 640u);
+    return count >= least ? min(most, level) : 0u;
+}
+
+uint leaf_count_of(uint level) { return 1u << (3u * level); }
+
+// A cell that is to be split. Host twin: gridwalk_core::layout::SplitCell.
+struct SplitCell {
+    uint first_reference; // of all references of split cells
+    uint list_begin;
+    uint list_length;
+    uint leaf_begin; // of all leaf cells
+    uint cell;
+    uint level; // 0: its leaf cells did not fit, so it stays whole
+    uint xy; // of the cell: x in the low half
+    uint z;
+};
+
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer SplitCellsIn { SplitCell cell[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer SplitCellsOut { SplitCell cell[]; };
+
+// The whole grid with 2^level cells for each along each axis.
+GridHeader refined(GridHeader grid, uint level) {
+    grid.cell_size *= uintBitsToFloat((127u - level) << 23);
+    grid.inverse_cell_size *= uintBitsToFloat((127u + level) << 23);
+    grid.resolution <<= level;
+    return grid;
+}
+
+#endif
