@@ -31,6 +31,7 @@ void main() {
         if (index < brick_count) {
             BrickCells brick = brick_cells(index, resolution);
             uvec2 mask = uvec2(0u);
+            uint longest = 0u;
             for (uint z = 0u; z < brick.size.z; ++z) {
                 for (uint y = 0u; y < brick.size.y; ++y) {
                     uint row = cell_id(brick.low + uvec3(0u, y, z), resolution);
@@ -39,7 +40,7 @@ void main() {
                         uvec2 range = cells.range[row + x];
                         uint length = range.y - range.x;
                         bits |= uint(range.y != 0u) << x;
-                        occupancy.longest_list = max(occupancy.longest_list, length);
+                        longest = max(longest, length);
                         uint level = leaf_level(length, LEAST_SPLIT, most);
                         if (level != 0u) {
                             for (uint i = 0u; i < (length >= LEAST_SPLIT_OF_LONG ? 2u : 1u); ++i) {
@@ -55,8 +56,9 @@ void main() {
                 }
             }
             occupancy.cells_in_use += uint(bitCount(mask.x) + bitCount(mask.y));
+            occupancy.longest_list = max(occupancy.longest_list, longest);
             // The distance is measured by the next steps.
-            bricks.brick[index] = Brick(mask, 0u, 0u);
+            bricks.brick[index] = Brick(mask, 0u, longest);
         }
     }
     occupancy = workgroup_occupancy(occupancy);

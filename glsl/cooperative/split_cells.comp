@@ -13,6 +13,7 @@ layout(push_constant, std430) uniform SplitCells {
     GridwalkGrid grid;
     StateIn state; // of the second level
     Cells cells;
+    Bricks bricks;
     OccupancyIn partials;
     SplitCellsOut split_cells;
     uint leaf_capacity;
@@ -36,15 +37,21 @@ void main() {
     uint references = 0u;
     uint leaves = 0u;
     for (uint index = first; index < last; ++index) {
+        if (bricks.brick[index].longest_list < least) {
+            continue;
+        }
         BrickCells brick = brick_cells(index, resolution);
-        for (uint i = 0u; i < brick.size.x * brick.size.y * brick.size.z; ++i) {
-            uint row = i / brick.size.x;
-            uvec3 cell = brick.low + uvec3(i - row * brick.size.x, row % brick.size.y, row / brick.size.y);
-            uvec2 range = cells.range[cell_id(cell, resolution)];
-            uint level = leaf_level(range.y - range.x, least, most);
-            records += uint(level != 0u);
-            references += level != 0u ? range.y - range.x : 0u;
-            leaves += level != 0u ? leaf_count_of(level) : 0u;
+        for (uint z = 0u; z < brick.size.z; ++z) {
+            for (uint y = 0u; y < brick.size.y; ++y) {
+                uint row = cell_id(brick.low + uvec3(0u, y, z), resolution);
+                for (uint x = 0u; x < brick.size.x; ++x) {
+                    uvec2 range = cells.range[row + x];
+                    uint level = leaf_level(range.y - range.x, least, most);
+                    records += uint(level != 0u);
+                    references += level != 0u ? range.y - range.x : 0u;
+                    leaves += level != 0u ? leaf_count_of(level) : 0u;
+                }
+            }
         }
     }
     uint total;
@@ -52,20 +59,28 @@ void main() {
     uint reference = occupancy.references_before + workgroup_exclusive_scan(references, total);
     uint leaf = saturating_add(occupancy.leaves_before, workgroup_exclusive_scan(leaves, total));
     for (uint index = first; index < last && records > 0u; ++index) {
+        if (bricks.brick[index].longest_list < least) {
+            continue;
+        }
         BrickCells brick = brick_cells(index, resolution);
-        for (uint i = 0u; i < brick.size.x * brick.size.y * brick.size.z; ++i) {
-            uint row = i / brick.size.x;
-            uvec3 cell = brick.low + uvec3(i - row * brick.size.x, row % brick.size.y, row / brick.size.y);
-            uint id = cell_id(cell, resolution);
-            uvec2 range = cells.range[id];
-            uint length = range.y - range.x;
-            uint level = leaf_level(length, least, most);
-            if (level != 0u) {
-                uint end = saturating_add(leaf, leaf_count_of(level));
-                split_cells.cell[record] = SplitCell(reference, range.x, length, leaf, id, end <= leaf_capacity ? level : 0u, cell.x | cell.y << 16u, cell.z);
-                record += 1u;
-                reference += length;
-                leaf = end;
+        for (uint z = 0u; z < brick.size.z; ++z) {
+            for (uint y = 0u; y < brick.size.y; ++y) {
+                uvec3 cell = brick.low + uvec3(0u, y, z);
+                uint row = cell_id(cell, resolution);
+                for (uint x = 0u; x < brick.size.x; ++x) {
+                    uvec2 range = cells.range[row + x];
+                    uint length = range.y - range.x;
+                    uint level = leaf_level(length, least, most);
+                    if (level != 0u) {
+                        uint end = saturating_add(leaf, leaf_count_of(level));
+                        uint fitting = end <= leaf_capacity ? level : 0u;
+                        uint xy = (cell.x + x) | cell.y << 16u;
+                        split_cells.cell[record] = SplitCell(reference, range.x, length, leaf, row + x, fitting, xy, cell.z);
+                        record += 1u;
+                        reference += length;
+                        leaf = end;
+                    }
+                }
             }
         }
     }

@@ -18,6 +18,7 @@ layout(push_constant, std430) uniform LeafCount {
     Triangles triangles;
     UintsOut counts;
     UintsOut masks;
+    UintsOut owners; // the split cell of each triangle
     CellsOut cells;
 };
 
@@ -31,7 +32,9 @@ void main() {
         counts.word[index] = 0u;
         return;
     }
-    SplitCell split = split_cells.cell[split_cell_of(split_cells, state.state.split_cells, index)];
+    uint owner = split_cell_of(split_cells, state.state.split_cells, index);
+    owners.word[index] = owner;
+    SplitCell split = split_cells.cell[owner];
     uint place = index - split.first_reference;
     // Few turns: there are at most 52 leaf cells for each triangle of a list.
     uint leaves = split.level == 0u ? 0u : leaf_count_of(split.level);

@@ -18,7 +18,8 @@ layout(push_constant, std430) uniform LeafEmit {
     Triangles triangles;
     UintsIn offsets;
     UintsIn masks;
-    // Written behind what the first level has there, offsets and masks included.
+    UintsIn owners;
+    // Written behind what the first level has there, and offsets, masks and owners.
     UintsOut keys_a;
     UintsOut keys_b;
     UintsOut values_a;
@@ -31,7 +32,7 @@ void main() {
     if (index + 1u >= state.state.offset_count) {
         return;
     }
-    SplitCell split = split_cells.cell[split_cell_of(split_cells, state.state.split_cells, index)];
+    SplitCell split = split_cells.cell[owners.word[index]];
     if (split.level == 0u) {
         return;
     }

@@ -29,7 +29,7 @@ const uint TRIANGLE_NUMBER = (1u << 26) - 1u;
 struct Brick {
     uvec2 mask;
     uint distance;
-    uint reserved;
+    uint longest_list; // of its cells, before they were split
 };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Bricks { Brick brick[]; };
 

@@ -92,8 +92,8 @@ pub struct Brick {
     pub mask: [u32; 2],
     /// All bricks closer than this, in the maximum norm, are empty.
     pub distance: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// Triangles in the fullest of its cells, before that was split.
+    pub longest_list: u32,
 }
 
 /// What a tile of bricks adds to the report, and gives the second level to do.

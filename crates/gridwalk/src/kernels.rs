@@ -283,7 +283,7 @@ pub static LEAF_COUNT: Kernel = Kernel {
     spirv: spirv!("../spirv/leaf_count.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 64,
+    push_constant_size: 72,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
@@ -292,6 +292,7 @@ pub static LEAF_COUNT: Kernel = Kernel {
         ("triangles", Access::Read),
         ("counts", Access::Write),
         ("masks", Access::Write),
+        ("owners", Access::Write),
         ("cells", Access::Write),
     ],
     spec_constants: &[(1, "EXACT", 0)],
@@ -304,7 +305,7 @@ pub static LEAF_EMIT: Kernel = Kernel {
     spirv: spirv!("../spirv/leaf_emit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 96,
+    push_constant_size: 104,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
@@ -313,6 +314,7 @@ pub static LEAF_EMIT: Kernel = Kernel {
         ("triangles", Access::Read),
         ("offsets", Access::Read),
         ("masks", Access::Read),
+        ("owners", Access::Read),
         ("keys_a", Access::Write),
         ("keys_b", Access::Write),
         ("values_a", Access::Write),
@@ -540,11 +542,12 @@ pub static SPLIT_CELLS: Kernel = Kernel {
     spirv: spirv!("../spirv/split_cells.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 48,
+    push_constant_size: 56,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
         ("cells", Access::Read),
+        ("bricks", Access::Read),
         ("partials", Access::Read),
         ("split_cells", Access::Write),
     ],
@@ -672,8 +675,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.mask) == 8);
     assert!(core::mem::offset_of!(Host, distance) == 8);
     assert!(size(|host: &Host| &host.distance) == 4);
-    assert!(core::mem::offset_of!(Host, reserved) == 12);
-    assert!(size(|host: &Host| &host.reserved) == 4);
+    assert!(core::mem::offset_of!(Host, longest_list) == 12);
+    assert!(size(|host: &Host| &host.longest_list) == 4);
     assert!(size_of::<Host>() == 16);
 };
 const _: () = {
@@ -1093,9 +1096,11 @@ const _: () = {
     assert!(size(|host: &Host| &host.counts) == 8);
     assert!(core::mem::offset_of!(Host, masks) == 48);
     assert!(size(|host: &Host| &host.masks) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 56);
+    assert!(core::mem::offset_of!(Host, owners) == 56);
+    assert!(size(|host: &Host| &host.owners) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 64);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(size_of::<Host>() == 64);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use crate::push::LeafEmit as Host;
@@ -1113,17 +1118,19 @@ const _: () = {
     assert!(size(|host: &Host| &host.offsets) == 8);
     assert!(core::mem::offset_of!(Host, masks) == 48);
     assert!(size(|host: &Host| &host.masks) == 8);
-    assert!(core::mem::offset_of!(Host, keys_a) == 56);
+    assert!(core::mem::offset_of!(Host, owners) == 56);
+    assert!(size(|host: &Host| &host.owners) == 8);
+    assert!(core::mem::offset_of!(Host, keys_a) == 64);
     assert!(size(|host: &Host| &host.keys_a) == 8);
-    assert!(core::mem::offset_of!(Host, keys_b) == 64);
+    assert!(core::mem::offset_of!(Host, keys_b) == 72);
     assert!(size(|host: &Host| &host.keys_b) == 8);
-    assert!(core::mem::offset_of!(Host, values_a) == 72);
+    assert!(core::mem::offset_of!(Host, values_a) == 80);
     assert!(size(|host: &Host| &host.values_a) == 8);
-    assert!(core::mem::offset_of!(Host, values_b) == 80);
+    assert!(core::mem::offset_of!(Host, values_b) == 88);
     assert!(size(|host: &Host| &host.values_b) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 88);
+    assert!(core::mem::offset_of!(Host, cells) == 96);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(size_of::<Host>() == 96);
+    assert!(size_of::<Host>() == 104);
 };
 const _: () = {
     use crate::push::NearestHits as Host;
@@ -1400,13 +1407,15 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, cells) == 16);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 24);
+    assert!(core::mem::offset_of!(Host, bricks) == 24);
+    assert!(size(|host: &Host| &host.bricks) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 32);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, split_cells) == 32);
+    assert!(core::mem::offset_of!(Host, split_cells) == 40);
     assert!(size(|host: &Host| &host.split_cells) == 8);
-    assert!(core::mem::offset_of!(Host, leaf_capacity) == 40);
+    assert!(core::mem::offset_of!(Host, leaf_capacity) == 48);
     assert!(size(|host: &Host| &host.leaf_capacity) == 4);
-    assert!(size_of::<Host>() == 48);
+    assert!(size_of::<Host>() == 56);
 };
 const _: () = {
     use crate::push::TraceArgs as Host;

@@ -472,6 +472,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
                 grid,
                 state: LeafState.token(),
                 cells: Cells.token(),
+                bricks: Bricks.token(),
                 partials: Occupancy.token(),
                 split_cells: SplitCells.token(),
                 leaf_capacity: capacity.leaf_cells,
@@ -494,13 +495,17 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
     let (grid, state, cells, triangles, references) =
         (Header.token(), LeafState.token(), Cells.token(), Triangles.token(), References.token());
     let (split_cells, report, arguments) = (SplitCells.token(), Report.token(), LeafArguments.token());
-    // Offsets and masks lie where the first level's sorted keys are no longer needed.
-    let (offsets, masks) = (KeysA.token(), KeysB.token());
+    // Offsets, masks and owners lie where the first level's sorted keys are no longer needed.
+    let (offsets, masks, owners) = (KeysA.token(), KeysB.token(), ValuesA.token());
     let passes = leaf_pass_capacity(capacity, shape);
     let count = leaf_argument(offset_of!(Arguments, count));
     plan.step(
-        Step::new(&LEAF_COUNT, count, push::LeafCount { grid, state, split_cells, references, triangles, counts: offsets, masks, cells })
-            .variant(exact),
+        Step::new(
+            &LEAF_COUNT,
+            count,
+            push::LeafCount { grid, state, split_cells, references, triangles, counts: offsets, masks, owners, cells },
+        )
+        .variant(exact),
     );
     plan.barrier(Barrier::Shader);
     let scan_groups = leaf_argument(offset_of!(Arguments, offsets_scan));
@@ -515,8 +520,21 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
     let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), references);
-    let emission =
-        push::LeafEmit { grid, state, split_cells, references, triangles, offsets, masks, keys_a, keys_b, values_a, values_b, cells };
+    let emission = push::LeafEmit {
+        grid,
+        state,
+        split_cells,
+        references,
+        triangles,
+        offsets,
+        masks,
+        owners,
+        keys_a,
+        keys_b,
+        values_a,
+        values_b,
+        cells,
+    };
     plan.step(Step::new(&LEAF_EMIT, leaf_argument(offset_of!(Arguments, emit)), emission).variant(exact));
     sort(plan, LeafState, passes, References, |pass| SortGroups {
         sort: leaf_argument(offset_of!(Arguments, sort) + 16 * pass),

@@ -43,6 +43,7 @@ pub(crate) struct SplitCells {
     pub(crate) grid: u64,
     pub(crate) state: u64,
     pub(crate) cells: u64,
+    pub(crate) bricks: u64,
     pub(crate) partials: u64,
     pub(crate) split_cells: u64,
     pub(crate) leaf_capacity: u32,
@@ -286,6 +287,7 @@ pub(crate) struct LeafCount {
     pub(crate) triangles: u64,
     pub(crate) counts: u64,
     pub(crate) masks: u64,
+    pub(crate) owners: u64,
     pub(crate) cells: u64,
 }
 
@@ -300,6 +302,7 @@ pub(crate) struct LeafEmit {
     pub(crate) triangles: u64,
     pub(crate) offsets: u64,
     pub(crate) masks: u64,
+    pub(crate) owners: u64,
     pub(crate) keys_a: u64,
     pub(crate) keys_b: u64,
     pub(crate) values_a: u64,

@@ -54,7 +54,7 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
     // Lists that are short on average, and lists that are long.
     for kept_count in [next, 100 * next] {
         let leaf_state = check_report(gpu, &header, kept_count, &mut sums, &what);
-        check_split_cells(gpu, &header, &cells, &leaf_state, &sums, &what);
+        check_split_cells(gpu, &header, &cells, &expected, &leaf_state, &sums, &what);
     }
 
     let [x, y] = &distances;
@@ -96,7 +96,15 @@ pub fn check_report(gpu: &Gpu, header: &GridHeader, kept_count: u32, sums: &mut 
 }
 
 /// The records are the twin's, and cover the lists of all cells that are long enough, without gap or overlap.
-fn check_split_cells(gpu: &Gpu, header: &GridHeader, cells: &[[u32; 2]], state: &BuildState, sums: &[TileOccupancy], what: &str) {
+fn check_split_cells(
+    gpu: &Gpu,
+    header: &GridHeader,
+    cells: &[[u32; 2]],
+    bricks: &[Brick],
+    state: &BuildState,
+    sums: &[TileOccupancy],
+    what: &str,
+) {
     let shape = gpu.tracer.shape();
     let len = state.split_cells as usize;
     let groups = split_workgroups(sums.len() as u32, 1);
@@ -105,6 +113,7 @@ fn check_split_cells(gpu: &Gpu, header: &GridHeader, cells: &[[u32; 2]], state: 
         gpu.upload("grid", &[*header]),
         gpu.upload("leaf state", &[*state]),
         gpu.upload("cells", cells),
+        gpu.upload("bricks", bricks),
         gpu.upload("partials", sums),
         gpu.guarded("split cells", ((len + 1) * size_of::<SplitCell>()) as u64),
     ];
@@ -112,7 +121,7 @@ fn check_split_cells(gpu: &Gpu, header: &GridHeader, cells: &[[u32; 2]], state: 
     let untouched: SplitCell = bytemuck::cast([CANARY; 8]);
     let mut expected = vec![untouched; len + 1];
     split_cells(&shape, groups, header, state.least_split, cells, sums, &mut expected, capacity);
-    let found = memory[4].read::<SplitCell>(0, len + 1);
+    let found = memory[5].read::<SplitCell>(0, len + 1);
     assert_same(&format!("{what}: split cells"), &found, &expected);
     let (mut references, mut leaves) = (0, 0);
     for (index, record) in found[..len].iter().enumerate() {

@@ -41,7 +41,8 @@ fn brick(grid: &GridHeader, index: u32, cells: &[[u32; 2]]) -> (Brick, TileOccup
         let one = TileOccupancy { cells_in_use, longest_list: length, split_cells, split_references, leaf_cells, ..occupancy };
         occupancy = unite(occupancy, one);
     }
-    (Brick { mask: [mask as u32, (mask >> 32) as u32], ..Brick::default() }, occupancy)
+    let longest_list = occupancy.longest_list;
+    (Brick { mask: [mask as u32, (mask >> 32) as u32], longest_list, ..Brick::default() }, occupancy)
 }
 
 /// Which cells of each brick are in use; what each tile of bricks adds to the report and gives the second level to do.

@@ -24,6 +24,7 @@ pub struct Leaves<'a> {
 
 /// A reference of a split cell.
 struct Listed<'a> {
+    owner: u32,
     split: &'a SplitCell,
     place: u32,
 }
@@ -31,8 +32,9 @@ struct Listed<'a> {
 impl Leaves<'_> {
     fn listed(&self, reference: u32) -> Listed<'_> {
         let records = &self.split_cells[..self.state.split_cells as usize];
-        let split = &records[records.partition_point(|split| split.first_reference <= reference) - 1];
-        Listed { split, place: reference - split.first_reference }
+        let owner = records.partition_point(|split| split.first_reference <= reference) - 1;
+        let split = &records[owner];
+        Listed { owner: owner as u32, split, place: reference - split.first_reference }
     }
 
     /// The box of leaf cells, and those that the triangle overlaps.
@@ -62,11 +64,13 @@ pub fn leaf_count(
     references: &[u32],
     counts: &mut [u32],
     masks: &mut [u32],
+    owners: &mut [u32],
     cells: &mut [[u32; 2]],
 ) {
     counts[leaves.state.offset_count as usize - 1] = 0;
     for reference in leaves.covered(shape, groups) {
-        let Listed { split, place } = leaves.listed(reference);
+        let Listed { owner, split, place } = leaves.listed(reference);
+        owners[reference as usize] = owner;
         if place == 0 && split.level != 0 {
             let first = (leaves.state.first_cell + split.leaf_begin) as usize;
             cells[first..first + leaf_count_of(split.level) as usize].fill([0, 0]);
@@ -86,7 +90,7 @@ pub fn leaf_count(
 pub fn leaf_emit(shape: &Shape, groups: [u32; 3], leaves: &Leaves, references: &[u32], cells: &mut [[u32; 2]]) -> Vec<(u32, u32)> {
     let mut pairs = Vec::new();
     for reference in leaves.covered(shape, groups) {
-        let Listed { split, place } = leaves.listed(reference);
+        let Listed { split, place, .. } = leaves.listed(reference);
         if place == 0 && split.level != 0 {
             cells[split.cell as usize] = [leaves.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level];
         }

@@ -287,8 +287,8 @@ impl Memory {
                     triangles: &self.triangles,
                     exact: step.exact,
                 };
-                let (counts, masks) = (&mut self.keys_a, &mut self.keys_b);
-                leaf_count(shape, groups, &leaves, &self.references, counts, masks, &mut self.cells);
+                let (counts, masks, owners) = (&mut self.keys_a, &mut self.keys_b, &mut self.values_a);
+                leaf_count(shape, groups, &leaves, &self.references, counts, masks, owners, &mut self.cells);
             }
             "leaf_args" => {
                 let (state, arguments, report) = (&mut self.leaf_state, &mut self.leaf_arguments, &mut self.report);
