@@ -36,7 +36,7 @@ void main() {
     owners.word[index] = owner;
     SplitCell split = split_cells.cell[owner];
     uint place = index - split.first_reference;
-    // Few turns: there are at most 52 leaf cells for each triangle of a list.
+    // Few turns: there are at most 32 leaf cells for each triangle of a list.
     uint leaves = split.level == 0u ? 0u : leaf_count_of(split.level);
     for (uint leaf = place; leaf < leaves; leaf += split.list_length) {
         cells.range[state.state.first_cell + split.leaf_begin + leaf] = uvec2(0u);

@@ -17,7 +17,7 @@ const uint LONG_LISTS = 6u;
 
 // The level of a cell that is split, by the length of its list: a surface that crosses it meets about 2 x 4^level of its leaf cells.
 uint leaf_level(uint count, uint least, uint most) {
-    uint level = uint(count >= 24u) + uint(count >= 48u) + uint(count >= 128u) + uint(count >= 320u) + uint(count >= 640u);
+    uint level = uint(count >= 24u) + uint(count >= 48u) + uint(count >= 128u) + uint(count >= 256u) + uint(count >= 1024u);
     return count >= least ? min(most, level) : 0u;
 }
 

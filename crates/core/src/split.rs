@@ -15,7 +15,7 @@ pub const LONG_LISTS: u32 = 6;
 
 /// 2^level leaf cells along each axis for a list of so many triangles.
 pub fn leaf_level(count: u32, least: u32, most: u32) -> u32 {
-    let level = [24, 48, 128, 320, 640].into_iter().filter(|least| count >= *least).count() as u32;
+    let level = [24, 48, 128, 256, 1024].into_iter().filter(|least| count >= *least).count() as u32;
     if count >= least { level.min(most) } else { 0 }
 }
 

@@ -93,12 +93,12 @@ fn leaf_cells_list_what_they_meet() {
     let gpu = Gpu::shared();
     let mut seen = [0; 6];
     for (count, resolution, seed) in
-        [(3_000, [9, 8, 7], 1), (3_000, [1, 2, 1], 2), (300, [20, 20, 20], 3), (9_000, [3, 3, 3], 4), (1_400, [9, 8, 7], 8)]
+        [(3_000, [9, 8, 7], 1), (3_000, [1, 2, 1], 2), (300, [20, 20, 20], 3), (12_000, [3, 3, 3], 4), (1_400, [9, 8, 7], 8)]
     {
         let mesh = crowd(count, seed);
         for overlap in [Overlap::Box, Overlap::Exact] {
             let options = BuildOptions { resolution: Some(resolution), overlap, ..BuildOptions::default() };
-            let room = Capacity { triangles: 10_000, cells: 10_000, pairs: 1 << 21, leaf_cells: 0 };
+            let room = Capacity { triangles: 20_000, cells: 10_000, pairs: 1 << 22, leaf_cells: 0 };
             let flat = gpu.build(&mesh, room, options);
             // Room for all leaf cells, and for some.
             for leaf_cells in [1 << 18, 4_000] {
