@@ -134,6 +134,9 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
         cells_in_use: report.cells_in_use.into(),
         written: report.pair_total.into(),
         pairs: report.pairs.into(),
+        passes: report.key_bits.div_ceil(field.ours.grid().tracer()?.shape().sort_bits),
+        leaf_cells: report.leaf_cells.into(),
+        leaf_pairs: report.leaf_pairs.into(),
     };
     for step in &mut steps {
         step.bytes = size.step(&step.name, step.count);
@@ -152,6 +155,9 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
         pairs: report.pairs,
         pair_total: report.pair_total,
         longest_list: report.longest_list,
+        split_cells: report.split_cells,
+        leaf_cells: report.leaf_cells,
+        leaf_pairs: report.leaf_pairs,
         grid_bytes: stats.grid_bytes,
         scratch_bytes: stats.scratch_bytes,
         fitted_bytes: fitted.grid.size + fitted.scratch.size,

@@ -86,8 +86,14 @@ pub struct SceneReport {
     pub pairs: u32,
     /// Pairs that the build needed room for: those that are left behind while sorting included.
     pub pair_total: u32,
-    /// Triangles in the fullest cell.
+    /// Triangles in the fullest cell, before it was split.
     pub longest_list: u32,
+    /// Cells with so many triangles that they are split.
+    pub split_cells: u32,
+    /// Leaf cells that they ask for.
+    pub leaf_cells: u32,
+    /// Pairs of leaf cells, beside `pairs`.
+    pub leaf_pairs: u32,
     /// Bytes of the grid with its triangles, as the renderer sizes it: pairs for the first guess of its builder or what a first build asked for.
     pub grid_bytes: u64,
     /// Bytes of the build's scratch, sized likewise.
@@ -548,6 +554,9 @@ pub mod tests {
             pairs: 1,
             pair_total: 1,
             longest_list: 1,
+            split_cells: 0,
+            leaf_cells: 0,
+            leaf_pairs: 0,
             grid_bytes: 1,
             scratch_bytes: 1,
             fitted_bytes: 1,

@@ -92,8 +92,22 @@ impl Report {
     }
 
     fn grids(&self) -> Vec<Vec<String>> {
-        let mut rows =
-            vec![head(&["scene", "triangles", "k", "overlap", "resolution", "cells", "in use", "pairs", "a triangle", "of", "longest"])];
+        let mut rows = vec![head(&[
+            "scene",
+            "triangles",
+            "k",
+            "overlap",
+            "resolution",
+            "cells",
+            "in use",
+            "pairs",
+            "a triangle",
+            "of",
+            "longest",
+            "split",
+            "leaf cells",
+            "pairs",
+        ])];
         rows.extend(self.scenes.iter().map(|scene| {
             vec![
                 scene.scene.clone(),
@@ -107,6 +121,9 @@ impl Report {
                 format!("{:.2}", f64::from(scene.pairs) / f64::from(scene.triangles.max(1))),
                 scene.pair_total.to_string(),
                 scene.longest_list.to_string(),
+                scene.split_cells.to_string(),
+                scene.leaf_cells.to_string(),
+                scene.leaf_pairs.to_string(),
             ]
         }));
         rows

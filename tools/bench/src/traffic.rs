@@ -29,14 +29,20 @@ pub struct Size {
     pub written: u64,
     /// Pairs that are listed.
     pub pairs: u64,
+    /// Passes of the sort over them; further launches sort the pairs of leaf cells.
+    pub passes: u32,
+    /// Leaf cells of the second level, and their pairs.
+    pub leaf_cells: u64,
+    pub leaf_pairs: u64,
 }
 
 impl Size {
     /// Bytes that a kernel of the build reads and writes in so many launches; none of a kernel that is not known, or that moves next to nothing.
     pub fn step(&self, kernel: &str, launches: u32) -> Option<u64> {
-        let Size { triangles, cells, cells_in_use, written, pairs } = *self;
+        let Size { triangles, cells, cells_in_use, written, pairs, passes, leaf_cells, leaf_pairs } = *self;
         let bricks = cells / CELLS_A_BRICK;
-        let later = u64::from(launches).saturating_sub(1);
+        let later = u64::from(launches.min(passes)).saturating_sub(1);
+        let of_leaves = u64::from(launches.saturating_sub(passes)) * leaf_pairs;
         Some(match kernel {
             "gather" => triangles * (INDICES + VERTICES + TRIANGLE),
             "clear_cells" => cells * CELL,
@@ -44,9 +50,9 @@ impl Size {
             "overlap_emit" => triangles * (TRIANGLE + 2 * WORD) + pairs * 2 * WORD,
             "scan_reduce" => triangles * WORD,
             "scan_downsweep" => triangles * 2 * WORD,
-            "sort_histogram" => (written + later * pairs) * WORD,
-            "sort_scatter" => (written + pairs + later * 2 * pairs) * 2 * WORD,
-            "cell_ranges" => pairs * WORD + cells_in_use * CELL,
+            "sort_histogram" => (written + later * pairs + of_leaves) * WORD,
+            "sort_scatter" => (written + pairs + later * 2 * pairs + 2 * of_leaves) * 2 * WORD,
+            "cell_ranges" => (pairs + leaf_pairs) * WORD + (cells_in_use + leaf_cells) * CELL,
             "brick_reduce" => cells * CELL + bricks * BRICK,
             "brick_distance_x" | "brick_distance_z" => bricks * (BRICK + WORD),
             "brick_distance_y" => bricks * 2 * WORD,
@@ -69,10 +75,14 @@ mod tests {
 
     #[test]
     fn every_large_step_is_known() {
-        let size = Size { triangles: 1000, cells: 8000, cells_in_use: 500, written: 4000, pairs: 3000 };
+        let size =
+            Size { triangles: 1000, cells: 8000, cells_in_use: 500, written: 4000, pairs: 3000, passes: 3, leaf_cells: 0, leaf_pairs: 0 };
         assert_eq!(size.step("gather", 1), Some(96_000));
         assert_eq!(size.step("sort_histogram", 3), Some(40_000));
         assert_eq!(size.step("sort_scatter", 3), Some(56_000 + 2 * 48_000));
+        let split = Size { leaf_cells: 100, leaf_pairs: 200, ..size };
+        assert_eq!(split.step("sort_histogram", 5), Some(40_000 + 2 * 800));
+        assert_eq!(split.step("sort_scatter", 5), Some(56_000 + 2 * 48_000 + 2 * 3_200));
         assert_eq!(size.step("configure", 1), None);
         assert_eq!(WalkCounts { steps: 2.0, tests: 1.0, cells: 1.0 }.bytes(), 140.0);
     }
