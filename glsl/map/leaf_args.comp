@@ -3,7 +3,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// One invocation turns the number of the second level's pairs into the sizes of the steps that follow. If they do not fit, cells stay whole.
+// One invocation turns the number of the second level's pairs into the sizes of the steps that follow. If they do not fit, no cell is split.
 
 #include "shared/build.glsl"
 
@@ -35,8 +35,11 @@ void main() {
     state.state.kept_count = count;
     state.state.table_count = table_count;
     if (!fits) {
+        // Where pairs of the first level are missing, those are what room is needed for first.
+        if ((report.report.overflow & OVERFLOW_PAIRS) == 0u) {
+            report.report.pair_total = max(report.report.pair_total, saturating_add(state.state.first_pair, total));
+        }
         report.report.overflow |= OVERFLOW_LEAVES;
-        report.report.pair_total = max(report.report.pair_total, saturating_add(state.state.first_pair, total));
     }
     report.report.leaf_pairs = count;
 

@@ -127,7 +127,7 @@ impl Run {
             ("pairs".to_owned(), format!("{} (longest list {})", self.pairs, self.longest_list)),
             (
                 "second level".to_owned(),
-                format!("{} cells split into {} leaf cells, {} pairs", self.split_cells, self.leaf_cells, self.leaf_pairs),
+                format!("{} cells ask for {} leaf cells; {} pairs", self.split_cells, self.leaf_cells, self.leaf_pairs),
             ),
             ("grid".to_owned(), mib(self.grid_bytes)),
             ("scratch".to_owned(), mib(self.scratch_bytes)),

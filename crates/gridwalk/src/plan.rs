@@ -547,7 +547,7 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
 }
 
 /// Times that a trace goes on with walks that ran out of their budget before they are reported: 209,600 triangles a ray in all, or more
-/// cells in use than the longest way through any grid passes. A continuation that is not needed costs two dispatches of next to nothing.
+/// cells in use than the longest way through any flat grid passes. A continuation that is not needed costs two dispatches of next to nothing.
 pub const CONTINUATIONS: u32 = 7;
 
 /// Bits of [`Step::variant`] of the trace kernels.

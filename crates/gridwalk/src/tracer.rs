@@ -288,6 +288,8 @@ impl RaySortInfo {
 
 /// Most hits a ray that [`Tracer::cmd_nearest_hits`] finds at once.
 pub const MAX_NEAREST: u32 = 64;
+// A walk that is given up keeps their number below the place in its cell.
+const _: () = assert!(MAX_NEAREST < 1 << gridwalk_core::layout::WALK_FINE);
 
 struct Variant {
     kernel: &'static Kernel,

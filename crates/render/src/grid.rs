@@ -76,6 +76,8 @@ pub struct Grid {
     settings: BuildSettings,
     /// Triangles that there were when the density was lowered.
     lowered_for: Option<u32>,
+    /// Whether more room for leaf cells is to be taken where they overflow: not once that has failed.
+    may_grow: bool,
     capacity: Capacity,
     grid: Buffer,
     scratch: Option<Buffer>,
@@ -157,7 +159,10 @@ impl GridBuilder {
         let first_pairs = u64::from(geometry.triangle_count) * FIRST_PAIRS_EACH + 1024;
         let mut pairs = outgrown.as_ref().and_then(|outgrown| outgrown.pairs).map_or(first_pairs, u64::from);
         let mut needed = u32::MAX;
-        let mut leaf_cells = if settings.split { outgrown.as_ref().map_or(0, |outgrown| outgrown.leaf_cells) } else { 0 };
+        let mut leaves = Leaves { leaf_cells: outgrown.as_ref().map_or(0, |outgrown| outgrown.leaf_cells), pairs: 0 };
+        // With which some cells were split, while more is tried.
+        let mut sufficient: Option<Leaves> = None;
+        let mut may_grow = true;
         let mut outgrown = outgrown;
         for attempts in 1..=MAX_ATTEMPTS {
             let roomy = |needed: u64, most: u32, of: fn(&Capacity) -> u32| {
@@ -168,8 +173,12 @@ impl GridBuilder {
             let capacity = Capacity {
                 triangles,
                 cells: cell_capacity(triangles, &settings)?,
-                pairs: roomy(pairs, MAX_PAIRS, |capacity| capacity.pairs),
-                leaf_cells: if settings.split { first_leaf_cells(triangles).max(leaf_cells) } else { 0 },
+                pairs: roomy(if settings.split { pairs.max(leaves.pairs.into()) } else { pairs }, MAX_PAIRS, |capacity| capacity.pairs),
+                leaf_cells: match settings.split {
+                    true => roomy(leaves.leaf_cells.into(), most_leaf_cells(triangles), |capacity| capacity.leaf_cells)
+                        .max(first_leaf_cells(triangles)),
+                    false => 0,
+                },
             };
             let mut grid = match self.allocate(capacity, settings) {
                 Ok(grid) => grid,
@@ -178,8 +187,13 @@ impl GridBuilder {
                     outgrown = None;
                     continue;
                 }
+                // Then without what only leaf cells ask for.
                 Err(Error::OutOfDeviceMemory { .. }) if settings.split => {
-                    settings.split = false;
+                    may_grow = false;
+                    match sufficient.take() {
+                        Some(room) => leaves = room,
+                        None => settings.split = false,
+                    }
                     continue;
                 }
                 // Fewer cells need fewer pairs: a coarser grid is better than none.
@@ -194,10 +208,23 @@ impl GridBuilder {
             grid.stats.attempts = attempts;
             let report = &grid.stats.report;
             if !report.pairs_overflowed() {
-                if let Some(more) = grid.more_leaves().filter(|_| attempts < MAX_ATTEMPTS) {
-                    leaf_cells = more.leaf_cells;
-                    pairs = pairs.max(more.pairs.into());
-                    continue;
+                let is_split = report.leaf_pairs > 0;
+                grid.may_grow = may_grow;
+                if attempts < MAX_ATTEMPTS {
+                    if let Some(more) = grid.more_leaves() {
+                        sufficient = is_split.then_some(leaves);
+                        leaves = more;
+                        continue;
+                    }
+                    // A second level that comes to nothing would cost each rebuild its time.
+                    if settings.split && report.leaves_overflowed() && !is_split {
+                        may_grow = false;
+                        match sufficient.take() {
+                            Some(room) => leaves = room,
+                            None => settings.split = false,
+                        }
+                        continue;
+                    }
                 }
                 grid.wanted = wanted;
                 grid.lowered_for = (settings.density < wanted.density).then_some(geometry.triangle_count);
@@ -210,6 +237,7 @@ impl GridBuilder {
                 None => {
                     settings.density = report.density / 8.0;
                     pairs = first_pairs;
+                    leaves.pairs = 0;
                 }
             }
         }
@@ -244,6 +272,7 @@ impl GridBuilder {
             wanted: settings,
             settings,
             lowered_for: None,
+            may_grow: true,
             capacity,
             grid,
             scratch: Some(scratch),
@@ -260,7 +289,8 @@ struct Outgrown {
     leaf_cells: u32,
 }
 
-/// Room that would let more cells be split.
+/// Room for the second level.
+#[derive(Clone, Copy)]
 struct Leaves {
     leaf_cells: u32,
     pairs: u32,
@@ -334,13 +364,16 @@ impl Grid {
 
     /// Whether the last build found too little room for leaf cells or their pairs, and more is possible.
     fn more_leaves(&self) -> Option<Leaves> {
-        let report = &self.stats.report;
-        let leaf_cells = report.leaf_cells.min(most_leaf_cells(self.capacity.triangles)).max(self.capacity.leaf_cells);
-        let pairs = report.needed_pairs()?.min(MAX_PAIRS).max(self.capacity.pairs);
-        let grows = leaf_cells > self.capacity.leaf_cells || pairs > self.capacity.pairs;
+        let Grid { capacity, stats: BuildStats { report, .. }, .. } = self;
+        let leaf_cells = report.leaf_cells.min(most_leaf_cells(capacity.triangles)).max(capacity.leaf_cells);
+        let pairs = report.needed_pairs()?;
         // Where large triangles meet all leaf cells of theirs, lists that are shorter elsewhere are not worth the memory.
-        let grows = grows && pairs <= most_pairs(self.capacity.triangles);
-        (report.leaves_overflowed() && grows && self.capacity.leaf_cells > 0).then_some(Leaves { leaf_cells, pairs })
+        let grows = match pairs > capacity.pairs {
+            true => pairs <= most_pairs(capacity.triangles),
+            false => leaf_cells > capacity.leaf_cells,
+        };
+        let wanted = self.may_grow && capacity.leaf_cells > 0 && report.leaves_overflowed();
+        (wanted && grows).then_some(Leaves { leaf_cells, pairs: pairs.max(capacity.pairs) })
     }
 
     /// Frees the memory of the build. The next [`Grid::rebuild`] takes it anew.

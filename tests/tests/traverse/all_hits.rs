@@ -13,13 +13,13 @@ use super::filters::{hits_of, meets_edge_on, scene};
 use super::twins::launches;
 use super::{meshes, rays};
 
-fn counts(gpu: &Gpu, built: &Built, rays: &[Ray]) -> Vec<u32> {
+pub fn counts(gpu: &Gpu, built: &Built, rays: &[Ray]) -> Vec<u32> {
     // SAFETY: see `trace`.
     gpu.trace(built, rays, |cmd, at, info| unsafe { gpu.tracer.cmd_count_hits(cmd, at, info) })
 }
 
 /// The nearest hits, and the next, portion after portion.
-fn nearest<const N: usize>(gpu: &Gpu, built: &Built, rays: &[Ray], portions: usize) -> Vec<Vec<[Hit; N]>>
+pub fn nearest<const N: usize>(gpu: &Gpu, built: &Built, rays: &[Ray], portions: usize) -> Vec<Vec<[Hit; N]>>
 where
     [Hit; N]: bytemuck::Pod,
 {

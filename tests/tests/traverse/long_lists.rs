@@ -96,6 +96,34 @@ fn walks_that_go_on_stand_beside_walks_that_ended() {
     }
 }
 
+/// Walks are given up in the middle of a leaf cell's list and go on there, in every kind of search.
+#[test]
+fn walks_go_on_in_leaf_cells() {
+    let gpu = Gpu::shared();
+    let count = 60_000;
+    // One large triangle spans a cell; all others crowd in one of its leaf cells, the last of them nearest.
+    let large = [[-1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]];
+    let small = |z: f32| [[0.3, 0.3, z], [0.301, 0.3, z], [0.3, 0.301, z]];
+    let mut triangles = vec![large];
+    triangles.extend((0..count - 1).map(|_| small(0.31)));
+    triangles.push(small(0.309));
+    let mesh = Mesh::from_triangles(&triangles);
+    let options = BuildOptions { resolution: Some([1, 1, 1]), ..BuildOptions::default() };
+    let built = gpu.build(&mesh, Capacity { triangles: count + 1, cells: 64, pairs: 1 << 20, leaf_cells: 1 << 15 }, options);
+    assert_eq!((built.report.split_cells, built.report.overflow), (1, 0), "{:?}", built.report);
+    assert!(built.report.leaf_pairs > count);
+    let rays = [ray([0.3001, 0.3001, -2.0], Z), ray([0.3001, 0.3001, 2.0], [0.0, 0.0, -1.0]), ray([0.9, 0.9, -2.0], Z)];
+    let hits = gpu.closest(&built, &rays);
+    assert_eq!((hits[0].triangle, hits[2]), (count, Hit::MISS));
+    assert_eq!(hits[1].triangle, 1, "the first of equal ones");
+    assert_eq!(gpu.any(&built, &rays), [1, 1, 0]);
+    assert_eq!(twins::closest_hits(&built.copy().view(), &rays), hits);
+    assert_eq!(super::all_hits::counts(gpu, &built, &rays), [count, count, 0]);
+    let nearest = super::all_hits::nearest::<2>(gpu, &built, &rays, 1);
+    assert_eq!(nearest[0][0].map(|hit| hit.triangle), [count, 1]);
+    assert_eq!(nearest[0][1].map(|hit| hit.triangle), [1, 2]);
+}
+
 #[test]
 fn a_long_way_is_walked() {
     let gpu = Gpu::shared();

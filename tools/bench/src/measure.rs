@@ -126,7 +126,8 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
     let stats = field.ours.grid().stats();
     let report = &stats.report;
     let pairs = report.pair_total.max(report.pairs + report.leaf_pairs);
-    let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs, leaf_cells: report.leaf_cells };
+    let leaf_cells = if report.leaf_pairs > 0 { report.leaf_cells.min(field.ours.grid().capacity().leaf_cells) } else { 0 };
+    let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs, leaf_cells };
     let fitted = field.ours.grid().tracer()?.build_sizes(&fitted).map_err(gridwalk_render::Error::from)?;
     let size = Size {
         triangles: report.triangles.into(),

@@ -2,10 +2,10 @@
 
 use super::pair_args::four;
 use crate::dispatch::split_workgroups;
-use crate::layout::{BuildState, LeafArguments, OVERFLOW_LEAVES, Report};
+use crate::layout::{BuildState, LeafArguments, OVERFLOW_LEAVES, OVERFLOW_PAIRS, Report};
 use crate::shape::Shape;
 
-/// Turns the number of the second level's pairs into the sizes of the steps that follow. If they do not fit, cells stay whole.
+/// Turns the number of the second level's pairs into the sizes of the steps that follow. If they do not fit, no cell is split.
 pub fn leaf_args(
     shape: &Shape,
     state: &mut BuildState,
@@ -25,8 +25,10 @@ pub fn leaf_args(
     state.kept_count = count;
     state.table_count = tiles << state.digit_bits;
     if !fits {
+        if report.overflow & OVERFLOW_PAIRS == 0 {
+            report.pair_total = report.pair_total.max(state.first_pair.saturating_add(total));
+        }
         report.overflow |= OVERFLOW_LEAVES;
-        report.pair_total = report.pair_total.max(state.first_pair.saturating_add(total));
     }
     report.leaf_pairs = count;
     arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
