@@ -163,3 +163,66 @@ fn a_grid_that_was_made_coarser_becomes_finer_again() {
         assert_eq!(grid.stats().report.density, lowered);
     }
 }
+
+/// A small round thing in a wide scene: its cells are split.
+fn crowded() -> Scene {
+    let small = generate::sphere([0.31, 0.31, 0.31], 0.02, 60);
+    scene(vec![(generate::plane([4.0; 2], 2), matt(0.5)), (small, matt(0.5)), (generate::cuboid([1.0; 3]), matt(0.5))])
+}
+
+/// The memory for leaf cells grows to what they need, once.
+#[test]
+fn room_for_leaf_cells_is_found_and_kept() {
+    let context = Context::new(&ContextDesc::default()).unwrap();
+    let gpu = GpuScene::upload(&context, &crowded()).unwrap();
+    let builder = GridBuilder::new(&context).unwrap();
+    let mut grid = builder.build(&gpu, &BuildSettings::default()).unwrap();
+    let report = grid.stats().report;
+    assert!(report.leaf_pairs > 0 && report.overflow == 0 && grid.capacity().leaf_cells >= report.leaf_cells, "{report:?}");
+    let made = context.allocations();
+    for _ in 0..3 {
+        grid.rebuild(&gpu).unwrap();
+        assert_eq!((grid.stats().report, grid.stats().attempts, context.allocations()), (report, 1, made));
+    }
+    let flat = builder.build(&gpu, &BuildSettings { split: false, ..BuildSettings::default() }).unwrap();
+    assert_eq!((flat.stats().report.leaf_pairs, flat.capacity().leaf_cells), (0, 0));
+    assert_eq!(flat.stats().report.pairs, report.pairs);
+}
+
+/// Cells that large triangles fill have little use for leaf cells: not all that they ask for is taken, and no rebuild tries again.
+#[test]
+fn leaf_cells_that_need_too_much_are_not_all_made() {
+    let context = Context::new(&ContextDesc::default()).unwrap();
+    let gpu = GpuScene::upload(&context, &crossing(3000)).unwrap();
+    let builder = GridBuilder::new(&context).unwrap();
+    let settings = BuildSettings { resolution: Some([5, 6, 7]), ..BuildSettings::default() };
+    let mut grid = builder.build(&gpu, &settings).unwrap();
+    let flat = builder.build(&gpu, &BuildSettings { split: false, ..settings }).unwrap();
+    let report = grid.stats().report;
+    assert!(report.leaves_overflowed() && !report.pairs_overflowed() && report.pairs == flat.stats().report.pairs, "{report:?}");
+    assert!(grid.capacity().leaf_cells < report.leaf_cells, "{report:?} {:?}", grid.capacity());
+    let made = context.allocations();
+    for _ in 0..2 {
+        grid.rebuild(&gpu).unwrap();
+        assert_eq!((grid.stats().attempts, context.allocations()), (1, made));
+    }
+}
+
+/// Where memory is short it is the leaf cells that give way, not the density.
+#[test]
+fn leaf_cells_give_way_where_memory_is_short() {
+    let build = |split, memory_limit| {
+        let context = Context::new(&ContextDesc { memory_limit, ..ContextDesc::default() }).unwrap();
+        let gpu = GpuScene::upload(&context, &crowded()).unwrap();
+        let grid = GridBuilder::new(&context).unwrap().build(&gpu, &BuildSettings { split, ..BuildSettings::default() }).unwrap();
+        (grid.stats().report, context.peak_bytes())
+    };
+    let (flat, least) = build(false, None);
+    let (split, most) = build(true, None);
+    assert!(split.leaf_pairs > 0 && most > least, "{least} bytes, {most} with leaf cells");
+    for limit in [least, (least + most) / 2, most - 1] {
+        let (report, peak) = build(true, Some(limit));
+        assert_eq!((report.density, report.pairs, report.pairs_overflowed()), (flat.density, flat.pairs, false), "{report:?}");
+        assert!(peak <= limit);
+    }
+}
