@@ -1,6 +1,6 @@
 //! Twin of kernel `leaf_args`.
 
-use super::pair_args::four;
+use super::pair_args::{four, pass_groups};
 use crate::dispatch::split_workgroups;
 use crate::layout::{BuildState, LeafArguments, OVERFLOW_LEAVES, OVERFLOW_PAIRS, Report};
 use crate::shape::Shape;
@@ -33,11 +33,8 @@ pub fn leaf_args(
     report.leaf_pairs = count;
     arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
     arguments.cell_ranges = four(split_workgroups(count, shape.map_size));
-    for pass in 0..pass_capacity as usize {
-        let used = (pass as u32) < state.pass_count && count > 0;
-        let groups = |groups| if used { four(groups) } else { [0; 4] };
-        arguments.sort[pass] = groups(split_workgroups(tiles, shape.sort_tiles()));
-        arguments.table_scan[pass] = groups(split_workgroups(state.table_count, shape.scan_tile()));
-        arguments.table_spine[pass] = groups([1, 1, 1]);
+    for pass in 0..pass_capacity {
+        let at = pass as usize;
+        [arguments.sort[at], arguments.table_scan[at], arguments.table_spine[at]] = pass_groups(shape, state, pass);
     }
 }

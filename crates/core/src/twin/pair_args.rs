@@ -8,6 +8,16 @@ pub(super) fn four([x, y, z]: [u32; 3]) -> [u32; 4] {
     [x, y, z, 0]
 }
 
+/// Workgroups of a pass of the sort of a state's pairs: of its histogram and scatter, of the reduce and the downsweep of its table's scan, and
+/// of that scan's spine.
+pub(super) fn pass_groups(shape: &Shape, state: &BuildState, pass: u32) -> [[u32; 4]; 3] {
+    if pass >= state.pass_count || state.pair_count == 0 {
+        return [[0; 4]; 3];
+    }
+    let tiles = state.pair_count.div_ceil(shape.sort_tile());
+    [split_workgroups(tiles, shape.sort_tiles()), split_workgroups(state.table_count, shape.scan_tile()), [1, 1, 1]].map(four)
+}
+
 /// Turns the number of pairs into the sizes of the steps that follow.
 pub fn pair_args(
     shape: &Shape,
@@ -31,11 +41,8 @@ pub fn pair_args(
     let runs = four(split_workgroups(count.div_ceil(shape.emit_pairs), shape.map_size));
     arguments.emit_large = if state.has_large != 0 { runs } else { [0; 4] };
     arguments.cell_ranges = four(split_workgroups(count, shape.map_size));
-    for pass in 0..pass_capacity as usize {
-        let used = (pass as u32) < state.pass_count && count > 0;
-        let groups = |groups| if used { four(groups) } else { [0; 4] };
-        arguments.sort[pass] = groups(split_workgroups(tiles, shape.sort_tiles()));
-        arguments.table_scan[pass] = groups(split_workgroups(state.table_count, shape.scan_tile()));
-        arguments.table_spine[pass] = groups([1, 1, 1]);
+    for pass in 0..pass_capacity {
+        let at = pass as usize;
+        [arguments.sort[at], arguments.table_scan[at], arguments.table_spine[at]] = pass_groups(shape, state, pass);
     }
 }

@@ -279,22 +279,11 @@ impl Memory {
                 let least = self.leaf_state.least_split;
                 split_cells(shape, groups, &self.header, least, &self.cells, &self.occupancy, &mut self.split_cells, words[0]);
             }
-            "leaf_count" => {
-                let leaves = Leaves {
-                    grid: &self.header,
-                    state: &self.leaf_state,
-                    split_cells: &self.split_cells,
-                    triangles: &self.triangles,
-                    exact: step.exact,
-                };
-                let (counts, masks, owners) = (&mut self.keys_a, &mut self.keys_b, &mut self.values_a);
-                leaf_count(shape, groups, &leaves, &self.references, counts, masks, owners, &mut self.cells);
-            }
             "leaf_args" => {
                 let (state, arguments, report) = (&mut self.leaf_state, &mut self.leaf_arguments, &mut self.report);
                 leaf_args(shape, state, &self.keys_a, arguments, report, words[0], words[1]);
             }
-            "leaf_emit" => {
+            "leaf_count" | "leaf_emit" => {
                 let leaves = Leaves {
                     grid: &self.header,
                     state: &self.leaf_state,
@@ -302,14 +291,19 @@ impl Memory {
                     triangles: &self.triangles,
                     exact: step.exact,
                 };
-                let pairs = leaf_emit(shape, groups, &leaves, &self.references, &mut self.cells);
-                let (keys, values) = match writes_a(self.leaf_state.pass_count, 0) {
-                    true => (&mut self.keys_a, &mut self.values_a),
-                    false => (&mut self.keys_b, &mut self.references),
-                };
-                for (pair, (key, value)) in (self.leaf_state.first_pair as usize..).zip(pairs) {
-                    keys[pair] = key;
-                    values[pair] = value;
+                if step.kernel == "leaf_count" {
+                    let (counts, masks, owners) = (&mut self.keys_a, &mut self.keys_b, &mut self.values_a);
+                    leaf_count(shape, groups, &leaves, &self.references, counts, masks, owners, &mut self.cells);
+                } else {
+                    let pairs = leaf_emit(shape, groups, &leaves, &self.references, &mut self.cells);
+                    let (keys, values) = match writes_a(self.leaf_state.pass_count, 0) {
+                        true => (&mut self.keys_a, &mut self.values_a),
+                        false => (&mut self.keys_b, &mut self.references),
+                    };
+                    for (pair, (key, value)) in (self.leaf_state.first_pair as usize..).zip(pairs) {
+                        keys[pair] = key;
+                        values[pair] = value;
+                    }
                 }
             }
             "brick_distance_x" => brick_distance_x(shape, groups, resolution, &self.bricks, &mut self.distances_x),
