@@ -48,7 +48,7 @@ void main() {
             float s;
             float u;
             float v;
-            if (walk_test(walk, header, triangle, s, u, v)) {
+            if (walk_test(walk, header, 3u * triangle, s, u, v)) {
                 walk_commit(walk, s, u, v, triangle);
             }
         }

@@ -34,12 +34,11 @@ bool count_run(inout Walk walk, GridHeader header, inout float entry, inout uint
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
-            uint triangle = References(header.references).triangle[walk.reference];
+            uint vertex = walk_take(walk, header);
             float s;
             float u;
             float v;
-            walk.reference += 1u;
-            bool met = walk_test(walk, header, triangle, s, u, v) && walk_accepts(walk, header, triangle);
+            bool met = walk_test(walk, header, vertex, s, u, v) && walk_accepts(walk, header, vertex / 3u);
             count += uint(met && s > entry && s <= walk.exit);
         }
     }

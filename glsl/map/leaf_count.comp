@@ -41,10 +41,10 @@ void main() {
     for (uint leaf = place; leaf < leaves; leaf += split.list_length) {
         cells.range[state.state.first_cell + split.leaf_begin + leaf] = uvec2(0u);
     }
-    uint triangle = references.triangle[split.list_begin + place];
-    vec3 v0 = triangles.vertex[3u * triangle].xyz;
-    vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
-    vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
+    uint vertex = references.vertex[split.list_begin + place];
+    vec3 v0 = triangles.vertex[vertex].xyz;
+    vec3 v1 = triangles.vertex[vertex + 1u].xyz;
+    vec3 v2 = triangles.vertex[vertex + 2u].xyz;
     GridHeader fine = refined(grid.header, split.level);
     LeafBox box = leaf_box(fine, split, v0, v1, v2);
     uint count = box.count;

@@ -43,10 +43,10 @@ void main() {
     bool to_a = writes_a(state.state.pass_count, 0u);
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
-    uint triangle = references.triangle[split.list_begin + place];
-    vec3 v0 = triangles.vertex[3u * triangle].xyz;
-    vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
-    vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
+    uint vertex = references.vertex[split.list_begin + place];
+    vec3 v0 = triangles.vertex[vertex].xyz;
+    vec3 v1 = triangles.vertex[vertex + 1u].xyz;
+    vec3 v2 = triangles.vertex[vertex + 2u].xyz;
     GridHeader fine = refined(grid.header, split.level);
     LeafBox box = leaf_box(fine, split, v0, v1, v2);
     uint mask = masks.word[index];
@@ -63,7 +63,7 @@ void main() {
         if (overlaps) {
             uvec3 local = cell & inside;
             keys.word[pair] = split.leaf_begin + local.x + ((local.y + (local.z << split.level)) << split.level);
-            values.word[pair] = triangle;
+            values.word[pair] = vertex;
             pair += 1u;
         }
         cell = next_cell(box.cells, cell);

@@ -77,12 +77,12 @@ bool nearest_run(inout Search search, inout Walk walk, GridHeader header, Ray ra
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
-            uint triangle = References(header.references).triangle[walk.reference];
+            uint vertex = walk_take(walk, header);
+            uint triangle = vertex / 3u;
             float s;
             float u;
             float v;
-            walk.reference += 1u;
-            bool met = walk_test(walk, header, triangle, s, u, v) && walk_accepts(walk, header, triangle);
+            bool met = walk_test(walk, header, vertex, s, u, v) && walk_accepts(walk, header, triangle);
             if (met && (s > search.floor_s || (s == search.floor_s && triangle > search.floor_triangle))) {
                 walk_commit(walk, s, u, v, triangle);
             }
@@ -120,23 +120,16 @@ void main() {
         rest = GRIDWALK_UNFINISHED;
     }
     if (searches) {
+        Walk walk = walk_begin(header, moved);
         if (has_floor) {
             // The same arithmetic on the same triangle gives the same distance.
-            Triangles triangles = Triangles(header.triangles);
             float u;
             float v;
-            intersect_triangle(moved, triangles.vertex[3u * before].xyz, triangles.vertex[3u * before + 1u].xyz,
-                               triangles.vertex[3u * before + 2u].xyz, search.floor_s, u, v);
+            intersect_triangle(moved, walk_corners(walk, header, 3u * before), search.floor_s, u, v);
             search.floor_triangle = before;
         }
-        Walk walk = walk_begin(header, moved);
         if (continues) {
-            WalkState saved = walks.walk[place];
-            walk_restore(walk, header, saved);
-            uint reference = walk.reference;
-            walk_enter(walk, header);
-            search.list_begin = walk.reference;
-            walk.reference = reference;
+            search.list_begin = walk_restore(walk, header, walks.walk[place]);
         } else {
             search.list_begin = walk.reference;
         }

@@ -45,7 +45,7 @@ void main() {
     for (; mask != 0u && pair < pair_count; mask >>= 1u) {
         if ((mask & 1u) != 0u) {
             keys.word[pair] = cell_id(cell, header.resolution);
-            values.word[pair] = triangle;
+            values.word[pair] = 3u * triangle;
             pair += 1u;
         }
         cell = next_cell(box, cell);

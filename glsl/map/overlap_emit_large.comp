@@ -73,7 +73,7 @@ void main() {
             for (uint i = pair; i < end; ++i) {
                 bool overlaps = !test || meets(axes, header, cell - box.low);
                 keys.word[i] = overlaps ? cell_id(cell, header.resolution) : header.cell_count;
-                values.word[i] = triangle;
+                values.word[i] = 3u * triangle;
                 cell = next_cell(box, cell);
             }
         }

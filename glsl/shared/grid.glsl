@@ -10,7 +10,8 @@
 // [begin, end) in the references; {0, 0} for an empty cell. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
 // level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint triangle[]; };
+// A triangle is referred to by the index of its first vertex: three times its own.
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint vertex[]; };
 // Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
 // triangle's number in its geometry, the geometry's id, and its mask.
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
@@ -76,6 +77,9 @@ vec3 boundary(vec3 box_min, vec3 cell_size, vec3 i) {
 // Of whole numbers in [0, 2^23): added to 2^23 they are the mantissa. Drivers that run on a CPU convert floats to integers one invocation
 // at a time.
 uvec3 whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
+
+// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below.
+uvec3 whole_below(vec3 x) { return floatBitsToUint(x + vec3(8388607.5)) & uvec3(0x7FFFFFu); }
 
 uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
 

@@ -78,13 +78,12 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
     if (candidates.unfinished) {
         candidates.searching = false;
     } else if (candidates.walk.reference < candidates.walk.list_end) {
-        uint triangle = References(candidates.grid.references).triangle[candidates.walk.reference];
-        candidates.walk.reference += 1u;
+        uint vertex = walk_take(candidates.walk, candidates.grid);
         float u;
         float v;
-        if (walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)
-            && walk_accepts(candidates.walk, candidates.grid, triangle)) {
-            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
+        if (walk_test(candidates.walk, candidates.grid, vertex, candidates.s, u, v)
+            && walk_accepts(candidates.walk, candidates.grid, vertex / 3u)) {
+            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, vertex / 3u);
             return true;
         }
     } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {

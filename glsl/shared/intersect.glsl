@@ -103,44 +103,63 @@ float distance_to_s(MovedRay moved, float t) {
     return t / moved.t_of_s.y / moved.t_of_s.x - moved.start;
 }
 
-// Whether the ray's line meets the triangle; s, u and v are set if so. Edge functions of a shared edge differ in sign alone, because
-// each is a difference of two products and nothing is contracted; zero counts as inside, so no ray passes between two neighbours.
-// A triangle seen exactly edge-on is not hit. Both windings are.
-bool intersect_triangle(MovedRay ray, vec3 v0, vec3 v1, vec3 v2, out float s, out float u, out float v) {
-    vec3 a = permute(ray, v0 - ray.origin);
-    vec3 b = permute(ray, v1 - ray.origin);
-    vec3 c = permute(ray, v2 - ray.origin);
-    float ax = a.x - ray.shear.x * a.z;
-    float ay = a.y - ray.shear.y * a.z;
-    float bx = b.x - ray.shear.x * b.z;
-    float by = b.y - ray.shear.y * b.z;
-    float cx = c.x - ray.shear.x * c.z;
-    float cy = c.y - ray.shear.y * c.z;
-    float edge_u = cx * by - cy * bx;
-    float edge_v = ax * cy - ay * cx;
-    float edge_w = bx * ay - by * ax;
-    bool negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
-    bool positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
-    float determinant = edge_u + edge_v + edge_w;
-    // The inverse of a denormal may be infinite.
-    if ((negative && positive) || abs(determinant) < LEAST_NORMAL) {
-        return false;
-    }
+// Vertices of a triangle relative to the ray's origin, their components in the order of the triangle test.
+struct Corners {
+    vec3 a;
+    vec3 b;
+    vec3 c;
+};
+
+Corners corners_of(MovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
+    return Corners(permute(ray, v0 - ray.origin), permute(ray, v1 - ray.origin), permute(ray, v2 - ray.origin));
+}
+
+// Edge functions of a triangle as the ray sees it: of the edges that lie opposite of a, b and c. Those of a shared edge differ in sign alone,
+// because each is a difference of two products and nothing is contracted.
+vec3 edge_functions(MovedRay ray, Corners corners) {
+    float ax = corners.a.x - ray.shear.x * corners.a.z;
+    float ay = corners.a.y - ray.shear.y * corners.a.z;
+    float bx = corners.b.x - ray.shear.x * corners.b.z;
+    float by = corners.b.y - ray.shear.y * corners.b.z;
+    float cx = corners.c.x - ray.shear.x * corners.c.z;
+    float cy = corners.c.y - ray.shear.y * corners.c.z;
+    return vec3(cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+}
+
+// Whether the ray's line passes within the edges. Zero counts as inside, so no ray passes between two neighbours. Compared as integers,
+// which costs drivers that run on a CPU a third of what minima and maxima of floats cost that may be no number: as unsigned ones only
+// negative floats exceed that of -0, as signed ones only positive ones exceed 0.
+bool is_inside(vec3 edges) {
+    uvec3 bits = floatBitsToUint(edges);
+    ivec3 signed_bits = floatBitsToInt(edges);
+    bool negative = max(bits.x, max(bits.y, bits.z)) > 0x80000000u;
+    bool positive = max(signed_bits.x, max(signed_bits.y, signed_bits.z)) > 0;
+    return !(negative && positive);
+}
+
+// Where a ray that passes within a triangle's edges meets it; false, and no values, if it is seen exactly edge-on. Both windings are met.
+bool meet_triangle(MovedRay ray, Corners corners, vec3 edges, out float s, out float u, out float v) {
+    float determinant = edges.x + edges.y + edges.z;
     // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
     // for planes along the axes, and never beyond the triangle's vertices.
-    vec3 e1 = b - a;
-    vec3 e2 = c - a;
+    vec3 a = corners.a;
+    vec3 e1 = corners.b - a;
+    vec3 e2 = corners.c - a;
     vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
-    if (abs(facing) < LEAST_NORMAL) {
-        return false;
-    }
     float along = (normal.x * a.x + normal.y * a.y + normal.z * a.z) / facing;
-    s = min(max(along, min(a.z, min(b.z, c.z))), max(a.z, max(b.z, c.z))) * ray.shear.z;
+    s = min(max(along, min(a.z, min(corners.b.z, corners.c.z))), max(a.z, max(corners.b.z, corners.c.z))) * ray.shear.z;
     float inverse = 1.0 / determinant;
-    u = edge_v * inverse;
-    v = edge_w * inverse;
-    return true;
+    u = edges.y * inverse;
+    v = edges.z * inverse;
+    // The inverse of a denormal may be infinite.
+    return abs(determinant) >= LEAST_NORMAL && abs(facing) >= LEAST_NORMAL;
+}
+
+// Whether the ray's line meets the triangle; s, u and v are set if so.
+bool intersect_triangle(MovedRay ray, Corners corners, out float s, out float u, out float v) {
+    vec3 edges = edge_functions(ray, corners);
+    return is_inside(edges) && meet_triangle(ray, corners, edges, s, u, v);
 }
 
 #endif

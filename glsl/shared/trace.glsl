@@ -21,6 +21,7 @@ layout(constant_id = 2) const bool LAST = false; // a walk that is given up now 
 layout(constant_id = 3) const bool RESUME = false; // existing hits are to be beaten
 layout(constant_id = 4) const bool COUNT = false;
 layout(constant_id = 5) const bool EXTRAS = false; // masks, culling, geometry ids: what is not asked for costs nothing
+layout(constant_id = 6) const bool BY_COMPONENT = false; // vertices are loaded component by component
 
 // Bits of the push constant `launch`, where it stands for the first three.
 const uint LAUNCH_CONTINUE = 1u;
@@ -53,7 +54,8 @@ WalkState walk_save(Walk walk, GridHeader grid) {
     return WalkState(1u | fine << WALK_FINE, cell_id(cell, grid.resolution), walk.reference, walk.exit, walk.best_s, walk.best_u, walk.best_v, walk.best_triangle);
 }
 
-void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
+// Where the list of the walk's cell begins.
+uint walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
     uint slice = grid.resolution.x * grid.resolution.y;
     uint in_slice = saved.cell % slice;
     uvec3 cell = uvec3(in_slice % grid.resolution.x, in_slice / grid.resolution.x, saved.cell / slice);
@@ -61,8 +63,10 @@ void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
     walk.cell = ivec3((cell << grid.fine_shift) + (uvec3(fine, fine >> 8u, fine >> 16u) & 255u));
     walk.exit = saved.exit;
     walk_enter(walk, grid);
+    uint list_begin = walk.reference;
     walk.reference = saved.reference;
     walk_commit(walk, saved.best_s, saved.best_u, saved.best_v, saved.best_triangle);
+    return list_begin;
 }
 
 // Gives the walk its ray's mask and what is culled.
@@ -77,8 +81,43 @@ void walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
         index = order.word[place]; \
     }
 
+// Of vertices one component each. The offset is of the vertex in its triangle: as part of the type it needs no addition.
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer FirstVertices { layout(offset = 0) vec4 component[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer SecondVertices { layout(offset = 16) vec4 component[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer ThirdVertices { layout(offset = 32) vec4 component[]; };
+
+// Addresses of the vertices' components in the order of a ray's triangle test, and its origin likewise. Drivers that run on a CPU load one
+// component of one invocation at a time anyway, and permute vectors by two blends a component: there this order costs nothing. On a GPU a
+// vector is one load.
+struct Components {
+    uvec2 x;
+    uvec2 y;
+    uvec2 z;
+    vec3 origin;
+};
+
+uvec2 address_plus(uvec2 address, uint bytes) {
+    uint low = address.x + bytes;
+    return uvec2(low, address.y + uint(low < bytes));
+}
+
+Components components_of(MovedRay ray, GridHeader grid) {
+    uint x = ray.z_is_x ? 4u : (ray.z_is_y ? 8u : 0u);
+    uint y = ray.z_is_x ? 8u : (ray.z_is_y ? 0u : 4u);
+    uint z = ray.z_is_x ? 0u : (ray.z_is_y ? 4u : 8u);
+    return Components(address_plus(grid.triangles, x), address_plus(grid.triangles, y), address_plus(grid.triangles, z), permute(ray, ray.origin));
+}
+
+Corners load_corners(Components of, uint vertex) {
+    vec3 a = vec3(FirstVertices(of.x).component[vertex].x, FirstVertices(of.y).component[vertex].x, FirstVertices(of.z).component[vertex].x);
+    vec3 b = vec3(SecondVertices(of.x).component[vertex].x, SecondVertices(of.y).component[vertex].x, SecondVertices(of.z).component[vertex].x);
+    vec3 c = vec3(ThirdVertices(of.x).component[vertex].x, ThirdVertices(of.y).component[vertex].x, ThirdVertices(of.z).component[vertex].x);
+    return Corners(a - of.origin, b - of.origin, c - of.origin);
+}
+
 // Walks until the end or for TURNS turns; true at the end.
 bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
+    Components components = components_of(walk.ray, grid);
     for (uint turn = 0u; turn < TURNS; ++turn) {
         uint steps = 0u;
         while (walk.reference >= walk.list_end && steps < STEPS_EACH_TURN) {
@@ -93,20 +132,31 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
-            uint triangle = References(grid.references).triangle[walk.reference];
-            float s;
-            float u;
-            float v;
             if (COUNT) {
                 counters.tests += 1u;
             }
-            walk.reference += 1u;
-            bool met = walk_test(walk, grid, triangle, s, u, v) && (!EXTRAS || walk_accepts(walk, grid, triangle));
-            if (met && TRACE_ACCEPT(triangle, u, v)) {
-                walk_commit(walk, s, u, v, triangle);
+            uint vertex = walk_take(walk, grid);
+            Corners corners;
+            if (BY_COMPONENT) {
+                corners = load_corners(components, vertex);
+            } else {
+                corners = walk_corners(walk, grid, vertex);
+            }
+            // As walk_test has it, but that all which a hit changes is in the branch that most tests do not take: drivers that run on a CPU pass
+            // it by where no invocation of the subgroup takes it.
+            vec3 edges = edge_functions(walk.ray, corners);
+            if (is_inside(edges)) {
+                float s;
+                float u;
+                float v;
+                uint triangle = vertex / 3u;
+                bool met = meet_triangle(walk.ray, corners, edges, s, u, v) && walk_improves(walk, s, triangle);
+                if (met && (!EXTRAS || walk_accepts(walk, grid, triangle)) && TRACE_ACCEPT(triangle, u, v)) {
+                    walk_commit(walk, s, u, v, triangle);
 #ifdef TRACE_ANY
-                return true;
+                    return true;
 #endif
+                }
             }
         }
     }

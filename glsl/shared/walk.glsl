@@ -16,13 +16,13 @@
 
 struct Walk {
     MovedRay ray;
+    vec3 from_low; // the ray's origin, seen from the grid's lower corner
     vec3 inverse; // of the direction; 0 where that is 0
-    vec3 never; // added to the distances: beyond any where the direction is 0
+    vec3 at_zero; // s where a coordinate is 0; beyond any where the direction is 0
     bvec3 up; // the direction is positive
+    ivec3 one_up; // 1 where it is, else 0
     ivec3 cell; // fine
-    ivec3 low; // block of fine cells: [low, high)
-    ivec3 high;
-    vec3 boundaries; // s of the boundary ahead along each axis
+    ivec3 edge; // the boundary of the block ahead along each axis, by the fine cell above it
     float exit;
     uint reference; // next in the cell's list
     uint list_end;
@@ -41,6 +41,11 @@ const float BEYOND = 3.0e38;
 
 ivec3 select(bvec3 which, ivec3 yes, ivec3 no) {
     return ivec3(which.x ? yes.x : no.x, which.y ? yes.y : no.y, which.z ? yes.z : no.z);
+}
+
+// s of the boundary of the block ahead along each axis.
+vec3 walk_boundaries(Walk walk, GridHeader grid) {
+    return boundary(grid.box_min, grid.fine_cell_size, vec3(walk.edge)) * walk.inverse + walk.at_zero;
 }
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
@@ -67,21 +72,20 @@ void walk_enter(inout Walk walk, GridHeader grid) {
         walk.list_end = range.y;
     }
     int reach = int(brick.distance);
-    bool jump = reach != 0;
     // Of a jump the cells' shift is still the first level's.
-    ivec3 block = walk.cell >> shift;
-    walk.low = (jump ? max((at - ivec3(reach - 1)) << 2, ivec3(0)) : block) << shift;
-    walk.high = (jump ? min((at + ivec3(reach)) << 2, ivec3(grid.resolution)) : block + ivec3(1)) << shift;
-    vec3 edges = boundary(grid.box_min, grid.fine_cell_size, vec3(select(walk.up, walk.high, walk.low)));
-    walk.boundaries = (edges - walk.ray.origin) * walk.inverse + walk.never;
-    walk.exit = max(walk.exit, min(walk.boundaries.x, min(walk.boundaries.y, walk.boundaries.z)));
+    ivec3 next = (walk.cell >> shift) + walk.one_up;
+    ivec3 beyond = (at + select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2;
+    walk.edge = (reach != 0 ? min(max(beyond, ivec3(0)), ivec3(grid.resolution)) : next) << shift;
+    // As integers: none is below 0 that the maximum does not take.
+    ivec3 boundaries = floatBitsToInt(walk_boundaries(walk, grid));
+    walk.exit = intBitsToFloat(max(floatBitsToInt(walk.exit), min(boundaries.x, min(boundaries.y, boundaries.z))));
 }
 
 ivec3 walk_cell_at(Walk walk, GridHeader grid, float s) {
     vec3 travelled = s * walk.ray.direction;
-    vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_fine_cell_size);
+    vec3 cells = (walk.from_low + travelled) * grid.inverse_fine_cell_size;
     // Clamped as floats: a conversion out of range may give anything.
-    return ivec3(whole(min(max(cells, vec3(0.0)), vec3(grid.resolution << grid.fine_shift) - vec3(1.0))));
+    return ivec3(whole_below(min(max(cells, vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5))));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
@@ -90,8 +94,11 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
     walk.ray = ray;
     bvec3 still = equal(ray.direction, vec3(0.0));
     walk.up = greaterThan(ray.direction, vec3(0.0));
+    walk.one_up = select(walk.up, ivec3(1), ivec3(0));
     walk.inverse = vec3(still.x ? 0.0 : 1.0 / ray.direction.x, still.y ? 0.0 : 1.0 / ray.direction.y, still.z ? 0.0 : 1.0 / ray.direction.z);
-    walk.never = vec3(still.x ? BEYOND : 0.0, still.y ? BEYOND : 0.0, still.z ? BEYOND : 0.0);
+    vec3 at_zero = -ray.origin * walk.inverse;
+    walk.at_zero = vec3(still.x ? BEYOND : at_zero.x, still.y ? BEYOND : at_zero.y, still.z ? BEYOND : at_zero.z);
+    walk.from_low = ray.origin - grid.box_min;
     walk.cell = walk_cell_at(walk, grid, 0.0);
     walk.exit = 0.0;
     walk.best_s = ray.s_max;
@@ -106,17 +113,15 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
 
 // Into the next block; false outside of the grid.
 bool walk_step(inout Walk walk, GridHeader grid) {
-    bool x = walk.boundaries.x <= walk.boundaries.y && walk.boundaries.x <= walk.boundaries.z;
-    bool y = !x && walk.boundaries.y <= walk.boundaries.z;
-    bvec3 along = bvec3(x, y, !x && !y);
-    ivec3 last = walk.high - ivec3(1);
+    vec3 boundaries = walk_boundaries(walk, grid);
+    bool x = boundaries.x <= boundaries.y && boundaries.x <= boundaries.z;
+    bool y = !x && boundaries.y <= boundaries.z;
+    ivec3 last = walk.edge - walk.one_up;
     ivec3 inside = walk_cell_at(walk, grid, walk.exit);
-    inside = min(max(inside, select(walk.up, walk.cell, walk.low)), select(walk.up, last, walk.cell));
-    ivec3 beyond = select(walk.up, walk.high, walk.low - ivec3(1));
-    walk.cell = select(along, beyond, inside);
-    int coordinate = x ? walk.cell.x : (y ? walk.cell.y : walk.cell.z);
-    uint count = (x ? grid.resolution.x : (y ? grid.resolution.y : grid.resolution.z)) << grid.fine_shift;
-    if (uint(coordinate) >= count) {
+    inside = min(max(inside, min(walk.cell, last)), max(walk.cell, last));
+    ivec3 beyond = last + 2 * walk.one_up - ivec3(1);
+    walk.cell = select(bvec3(x, y, !x && !y), beyond, inside);
+    if (any(greaterThanEqual(uvec3(walk.cell), grid.resolution << grid.fine_shift))) {
         return false;
     }
     walk_enter(walk, grid);
@@ -131,12 +136,20 @@ bool walk_improves(Walk walk, float s, uint triangle) {
     return s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle));
 }
 
-bool walk_test(Walk walk, GridHeader grid, uint triangle, out float s, out float u, out float v) {
+// The next of the cell's list, by its first vertex.
+uint walk_take(inout Walk walk, GridHeader grid) {
+    uint vertex = References(grid.references).vertex[walk.reference];
+    walk.reference += 1u;
+    return vertex;
+}
+
+Corners walk_corners(Walk walk, GridHeader grid, uint vertex) {
     Triangles triangles = Triangles(grid.triangles);
-    vec3 v0 = triangles.vertex[3u * triangle].xyz;
-    vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
-    vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
-    return intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && walk_improves(walk, s, triangle);
+    return corners_of(walk.ray, triangles.vertex[vertex].xyz, triangles.vertex[vertex + 1u].xyz, triangles.vertex[vertex + 2u].xyz);
+}
+
+bool walk_test(Walk walk, GridHeader grid, uint vertex, out float s, out float u, out float v) {
+    return intersect_triangle(walk.ray, walk_corners(walk, grid, vertex), s, u, v) && walk_improves(walk, s, vertex / 3u);
 }
 
 // The id of a triangle's geometry, and the triangle's number within it.
@@ -146,10 +159,9 @@ uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
 }
 
 // Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
-bool sees_front(MovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-    vec3 a = permute(ray, v0 - ray.origin);
-    vec3 e1 = permute(ray, v1 - ray.origin) - a;
-    vec3 e2 = permute(ray, v2 - ray.origin) - a;
+bool sees_front(MovedRay ray, Corners corners) {
+    vec3 e1 = corners.b - corners.a;
+    vec3 e2 = corners.c - corners.a;
     vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
     return (facing < 0.0) == (ray.shear.z > 0.0);
@@ -165,9 +177,7 @@ bool walk_accepts(Walk walk, GridHeader grid, uint triangle) {
         return true;
     }
     uint flags = words.vertex[3u * triangle].w;
-    Triangles triangles = Triangles(grid.triangles);
-    bool front = sees_front(walk.ray, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
-                            triangles.vertex[3u * triangle + 2u].xyz);
+    bool front = sees_front(walk.ray, walk_corners(walk, grid, 3u * triangle));
     front = front != ((flags & TRIANGLE_FLIPPED) != 0u);
     bool culled = (walk.cull & (front ? GRIDWALK_CULL_FRONT : GRIDWALK_CULL_BACK)) != 0u;
     return !culled || (flags & TRIANGLE_TWO_SIDED) != 0u;

@@ -47,6 +47,7 @@ pub struct GridCopy {
     pub header: GridHeader,
     pub bricks: Vec<Brick>,
     pub cells: Vec<[u32; 2]>,
+    /// By first vertices, as the grid has them.
     pub references: Vec<u32>,
     pub triangles: Vec<[[f32; 4]; 3]>,
 }
@@ -144,8 +145,13 @@ impl Built {
         self.grid.read(self.offset(header.cells), (header.cell_count + leaf_cells) as usize)
     }
 
-    /// The lists of all cells, one after another; then those of all leaf cells.
+    /// The triangles in the lists of all cells, one after another; then in those of all leaf cells.
     pub fn references(&self) -> Vec<u32> {
+        self.first_vertices().into_iter().map(|vertex| vertex / 3).collect()
+    }
+
+    /// Likewise, as the grid has them.
+    fn first_vertices(&self) -> Vec<u32> {
         self.grid.read(self.offset(self.header().references), (self.report.pairs + self.report.leaf_pairs) as usize)
     }
 
@@ -174,15 +180,15 @@ impl Built {
             header: self.header(),
             bricks: self.bricks(),
             cells: self.cells(),
-            references: self.references(),
+            references: self.first_vertices(),
             triangles: self.triangles(),
         }
     }
 
     /// Lists another triangle wherever this one is listed: a grid that is wrong, for negative controls.
     pub fn forget_triangle(&self, victim: u32, instead: u32) {
-        let mut references = self.references();
-        references.iter_mut().filter(|reference| **reference == victim).for_each(|reference| *reference = instead);
+        let mut references = self.first_vertices();
+        references.iter_mut().filter(|vertex| **vertex == 3 * victim).for_each(|vertex| *vertex = 3 * instead);
         self.grid.write(self.offset(self.header().references), &references);
     }
 

@@ -8,6 +8,11 @@ pub fn boundary(box_min: Vec3, cell_size: Vec3, i: Vec3) -> Vec3 {
     add(box_min, offset)
 }
 
+/// floor(x) for x in [0.5, 2^23 - 0.5]: the nearest to x - 0.5. Of odd whole numbers the one below.
+pub fn whole_below(x: f32) -> u32 {
+    (x + 8_388_607.5).to_bits() & 0x7F_FFFF
+}
+
 /// Cells along each axis of a brick.
 pub const BRICK_SIZE: u32 = 4;
 

@@ -150,8 +150,9 @@ pub fn intersect_triangle(ray: &MovedRay, vertices: [Vec3; 3]) -> Option<Interse
     let edge_u = cx * by - cy * bx;
     let edge_v = ax * cy - ay * cx;
     let edge_w = bx * ay - by * ax;
-    let negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
-    let positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
+    let bits = [edge_u, edge_v, edge_w].map(f32::to_bits);
+    let negative = bits.iter().any(|bits| *bits > 0x8000_0000);
+    let positive = bits.iter().any(|bits| *bits as i32 > 0);
     let determinant = edge_u + edge_v + edge_w;
     if (negative && positive) || determinant.abs() < f32::MIN_POSITIVE {
         return None;

@@ -27,6 +27,8 @@ pub struct Shape {
     pub sort_alone: bool,
     /// Pairs an invocation of the emission.
     pub emit_pairs: u32,
+    /// Whether rays load vertices component by component, in the order of their triangle test, not as vectors.
+    pub by_component: bool,
 }
 
 impl Shape {
@@ -42,6 +44,7 @@ impl Shape {
         sort_keys: 8192,
         sort_alone: true,
         emit_pairs: 64,
+        by_component: true,
     };
 
     /// For GPUs.
@@ -56,6 +59,7 @@ impl Shape {
         sort_keys: 16,
         sort_alone: false,
         emit_pairs: 16,
+        by_component: false,
     };
 
     /// Whether the fields keep to what is said of them: kernels cut otherwise would not fit into shared memory, or give wrong results.
@@ -125,6 +129,7 @@ impl Shape {
             "SORT_TILE" => self.sort_tile(),
             "SORT_TILES" => self.sort_tiles(),
             "PAIRS_EACH" => self.emit_pairs,
+            "BY_COMPONENT" => self.by_component.into(),
             _ => return None,
         })
     }

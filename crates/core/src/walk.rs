@@ -1,7 +1,7 @@
 //! The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), as `shared/walk.glsl` and
 //! `shared/trace.glsl` have it: with jumps across bricks that are known to be empty.
 
-use crate::grid::{boundary, brick_resolution, cell_id, cell_of};
+use crate::grid::{boundary, brick_resolution, cell_id, cell_of, whole_below};
 use crate::intersect::{Intersection, MovedRay, intersect_triangle};
 use crate::layout::{Brick, CELL_LEVEL, CELL_SPLIT, GridHeader, TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED, WALK_FINE, WalkState};
 use crate::ray::MISS;
@@ -19,7 +19,7 @@ pub const GRIDWALK_TURNS: u32 = 32_768;
 pub const CULL_BACK: u32 = 1;
 /// Of a walk's `cull`: triangles are not hit of which the ray sees the front.
 pub const CULL_FRONT: u32 = 2;
-/// Added to the distance of a boundary that the ray does not move towards.
+/// Distance of a boundary that the ray does not move towards.
 pub const BEYOND: f32 = 3.0e38;
 
 /// A grid's memory, as a kernel reaches it through the addresses in the header.
@@ -31,7 +31,7 @@ pub struct Grid<'a> {
     pub bricks: &'a [Brick],
     /// Begin and end of each cell's list.
     pub cells: &'a [[u32; 2]],
-    /// The lists of all cells.
+    /// The lists of all cells: the index of each triangle's first vertex.
     pub references: &'a [u32],
     /// Three vertices a triangle, in the grid's frame.
     pub triangles: &'a [[[f32; 4]; 3]],
@@ -74,20 +74,20 @@ pub struct Counters {
 pub struct Walk {
     /// The ray in the grid's frame.
     pub ray: MovedRay,
+    /// The ray's origin, seen from the grid's lower corner.
+    pub from_low: Vec3,
     /// Of the direction; 0 where that is 0.
     pub inverse: Vec3,
-    /// Added to the distances: beyond any where the direction is 0.
-    pub never: Vec3,
+    /// s where a coordinate is 0; beyond any where the direction is 0.
+    pub at_zero: Vec3,
     /// Whether the direction is positive.
     pub up: [bool; 3],
     /// Where the walk is, in fine cells.
     pub cell: [i32; 3],
-    /// First cell of the block around it.
+    /// First cell of the block around it. The kernels keep of the block what lies ahead: see [`Walk::edge`].
     pub low: [i32; 3],
     /// End of the block, exclusive.
     pub high: [i32; 3],
-    /// s of the boundary ahead along each axis.
-    pub boundaries: Vec3,
     /// s at which the block is left.
     pub exit: f32,
     /// Next in the cell's list.
@@ -122,6 +122,19 @@ impl Default for Filter {
     }
 }
 
+impl Walk {
+    /// The boundary of the block ahead along each axis, by the fine cell above it.
+    pub fn edge(&self) -> [i32; 3] {
+        std::array::from_fn(|axis| if self.up[axis] { self.high[axis] } else { self.low[axis] })
+    }
+
+    /// s of these boundaries.
+    fn boundaries(&self, header: &GridHeader) -> Vec3 {
+        let edges = boundary(header.box_min, header.fine_cell_size, self.edge().map(|i| i as f32));
+        add(mul(edges, self.inverse), self.at_zero)
+    }
+}
+
 /// Looks at the cell: its list, the block around it, and where the ray leaves that.
 fn walk_enter(walk: &mut Walk, grid: &Grid) {
     let header = grid.header;
@@ -153,31 +166,28 @@ fn walk_enter(walk: &mut Walk, grid: &Grid) {
         (at.map(|i| ((i - (reach - 1)) << 2).max(0)), std::array::from_fn(|axis| ((at[axis] + reach) << 2).min(end[axis] as i32)))
     };
     (walk.low, walk.high) = (walk.low.map(|i| i << shift), walk.high.map(|i| i << shift));
-    let ahead = std::array::from_fn(|axis| (if walk.up[axis] { walk.high[axis] } else { walk.low[axis] }) as f32);
-    let edges = boundary(header.box_min, header.fine_cell_size, ahead);
-    walk.boundaries = add(mul(sub(edges, walk.ray.origin), walk.inverse), walk.never);
-    let nearest = min_f32(walk.boundaries[0], min_f32(walk.boundaries[1], walk.boundaries[2]));
-    walk.exit = max_f32(walk.exit, nearest);
+    let [x, y, z] = walk.boundaries(header);
+    walk.exit = max_f32(walk.exit, min_f32(x, min_f32(y, z)));
 }
 
 fn walk_cell_at(walk: &Walk, header: &GridHeader, s: f32) -> [i32; 3] {
     let travelled = walk.ray.direction.map(|x| s * x);
-    let cells = mul(sub(add(walk.ray.origin, travelled), header.box_min), header.inverse_fine_cell_size).map(f32::floor);
-    let last = sub(header.resolution.map(|n| (n << header.fine_shift) as f32), [1.0; 3]);
-    min(max(cells, [0.0; 3]), last).map(|x| x as i32)
+    let cells = mul(add(walk.from_low, travelled), header.inverse_fine_cell_size);
+    let last = sub(header.resolution.map(|n| (n << header.fine_shift) as f32), [0.5; 3]);
+    min(max(cells, [0.5; 3]), last).map(|x| whole_below(x) as i32)
 }
 
 /// A walk that has no cell: for tests of triangles alone.
 pub fn walk_nowhere(ray: MovedRay) -> Walk {
     Walk {
         ray,
+        from_low: [0.0; 3],
         inverse: [0.0; 3],
-        never: [0.0; 3],
+        at_zero: [0.0; 3],
         up: [false; 3],
         cell: [0; 3],
         low: [0; 3],
         high: [0; 3],
-        boundaries: [0.0; 3],
         exit: 0.0,
         reference: 0,
         list_end: 0,
@@ -192,9 +202,11 @@ pub fn walk_nowhere(ray: MovedRay) -> Walk {
 /// At the ray's first cell. Only for a grid of at least one cell.
 pub fn walk_begin(grid: &Grid, ray: MovedRay) -> Walk {
     let still = ray.direction.map(|x| x == 0.0);
+    let inverse: Vec3 = std::array::from_fn(|axis| if still[axis] { 0.0 } else { 1.0 / ray.direction[axis] });
     let mut walk = Walk {
-        inverse: std::array::from_fn(|axis| if still[axis] { 0.0 } else { 1.0 / ray.direction[axis] }),
-        never: still.map(|still| if still { BEYOND } else { 0.0 }),
+        from_low: sub(ray.origin, grid.header.box_min),
+        inverse,
+        at_zero: std::array::from_fn(|axis| if still[axis] { BEYOND } else { -ray.origin[axis] * inverse[axis] }),
         up: ray.direction.map(|x| x > 0.0),
         ..walk_nowhere(ray)
     };
@@ -205,7 +217,7 @@ pub fn walk_begin(grid: &Grid, ray: MovedRay) -> Walk {
 
 /// Into the next block; false outside of the grid.
 pub fn walk_step(walk: &mut Walk, grid: &Grid) -> bool {
-    let [x, y, z] = walk.boundaries;
+    let [x, y, z] = walk.boundaries(grid.header);
     let along = if x <= y && x <= z {
         0
     } else if y <= z {
@@ -294,15 +306,17 @@ pub fn walk_save(walk: &Walk, grid: &Grid) -> WalkState {
     }
 }
 
-/// Goes on where a walk was given up.
-pub fn walk_restore(walk: &mut Walk, grid: &Grid, saved: &WalkState) {
+/// Goes on where a walk was given up. Where the list of its cell begins.
+pub fn walk_restore(walk: &mut Walk, grid: &Grid, saved: &WalkState) -> u32 {
     let cell = cell_of(saved.cell, grid.header.resolution);
     let fine = saved.given_up >> WALK_FINE;
     walk.cell = std::array::from_fn(|axis| (cell[axis] << grid.header.fine_shift | fine >> (8 * axis) & 255) as i32);
     walk.exit = saved.exit;
     walk_enter(walk, grid);
+    let list_begin = walk.reference;
     walk.reference = saved.reference;
     walk_commit(walk, Intersection { s: saved.best_s, u: saved.best_u, v: saved.best_v }, saved.best_triangle);
+    list_begin
 }
 
 /// Walks until the end or for [`TURNS`] turns; true at the end. With `any`, the first hit is the end.
@@ -321,7 +335,7 @@ pub fn walk_run(walk: &mut Walk, grid: &Grid, any: bool, counters: &mut Counters
         }
         let stop = walk.list_end.min(walk.reference + TESTS_EACH_TURN);
         while walk.reference < stop {
-            let triangle = grid.references[walk.reference as usize];
+            let triangle = grid.references[walk.reference as usize] / 3;
             counters.tests += 1;
             walk.reference += 1;
             observer.test(walk, grid, triangle);

@@ -80,7 +80,8 @@ const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
 // [begin, end) in the references; {0, 0} for an empty cell. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
 // level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer GridwalkCells { uvec2 range[]; };
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint triangle[]; };
+// A triangle is referred to by the index of its first vertex: three times its own.
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint vertex[]; };
 // Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
 // triangle's number in its geometry, the geometry's id, and its mask.
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangles { vec4 vertex[]; };
@@ -146,6 +147,9 @@ precise vec3 gridwalk_boundary(vec3 box_min, vec3 cell_size, vec3 i) {
 // Of whole numbers in [0, 2^23): added to 2^23 they are the mantissa. Drivers that run on a CPU convert floats to integers one invocation
 // at a time.
 uvec3 gridwalk_whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
+
+// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below.
+uvec3 gridwalk_whole_below(vec3 x) { return floatBitsToUint(x + vec3(8388607.5)) & uvec3(0x7FFFFFu); }
 
 uint gridwalk_cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
 
@@ -250,57 +254,76 @@ precise float gridwalk_distance_to_s(GridwalkMovedRay moved, float t) {
     return t / moved.t_of_s.y / moved.t_of_s.x - moved.start;
 }
 
-// Whether the ray's line meets the triangle; s, u and v are set if so. Edge functions of a shared edge differ in sign alone, because
-// each is a difference of two products and nothing is contracted; zero counts as inside, so no ray passes between two neighbours.
-// A triangle seen exactly edge-on is not hit. Both windings are.
-bool gridwalk_intersect_triangle(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2, precise out float s, precise out float u, precise out float v) {
-    precise vec3 a = gridwalk_permute(ray, v0 - ray.origin);
-    precise vec3 b = gridwalk_permute(ray, v1 - ray.origin);
-    precise vec3 c = gridwalk_permute(ray, v2 - ray.origin);
-    precise float ax = a.x - ray.shear.x * a.z;
-    precise float ay = a.y - ray.shear.y * a.z;
-    precise float bx = b.x - ray.shear.x * b.z;
-    precise float by = b.y - ray.shear.y * b.z;
-    precise float cx = c.x - ray.shear.x * c.z;
-    precise float cy = c.y - ray.shear.y * c.z;
-    precise float edge_u = cx * by - cy * bx;
-    precise float edge_v = ax * cy - ay * cx;
-    precise float edge_w = bx * ay - by * ax;
-    bool negative = edge_u < 0.0 || edge_v < 0.0 || edge_w < 0.0;
-    bool positive = edge_u > 0.0 || edge_v > 0.0 || edge_w > 0.0;
-    precise float determinant = edge_u + edge_v + edge_w;
-    // The inverse of a denormal may be infinite.
-    if ((negative && positive) || abs(determinant) < GRIDWALK_LEAST_NORMAL) {
-        return false;
-    }
+// Vertices of a triangle relative to the ray's origin, their components in the order of the triangle test.
+struct GridwalkCorners {
+    vec3 a;
+    vec3 b;
+    vec3 c;
+};
+
+precise GridwalkCorners gridwalk_corners_of(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
+    return GridwalkCorners(gridwalk_permute(ray, v0 - ray.origin), gridwalk_permute(ray, v1 - ray.origin), gridwalk_permute(ray, v2 - ray.origin));
+}
+
+// Edge functions of a triangle as the ray sees it: of the edges that lie opposite of a, b and c. Those of a shared edge differ in sign alone,
+// because each is a difference of two products and nothing is contracted.
+precise vec3 gridwalk_edge_functions(GridwalkMovedRay ray, GridwalkCorners corners) {
+    precise float ax = corners.a.x - ray.shear.x * corners.a.z;
+    precise float ay = corners.a.y - ray.shear.y * corners.a.z;
+    precise float bx = corners.b.x - ray.shear.x * corners.b.z;
+    precise float by = corners.b.y - ray.shear.y * corners.b.z;
+    precise float cx = corners.c.x - ray.shear.x * corners.c.z;
+    precise float cy = corners.c.y - ray.shear.y * corners.c.z;
+    return vec3(cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+}
+
+// Whether the ray's line passes within the edges. Zero counts as inside, so no ray passes between two neighbours. Compared as integers,
+// which costs drivers that run on a CPU a third of what minima and maxima of floats cost that may be no number: as unsigned ones only
+// negative floats exceed that of -0, as signed ones only positive ones exceed 0.
+bool gridwalk_is_inside(vec3 edges) {
+    uvec3 bits = floatBitsToUint(edges);
+    ivec3 signed_bits = floatBitsToInt(edges);
+    bool negative = max(bits.x, max(bits.y, bits.z)) > 0x80000000u;
+    bool positive = max(signed_bits.x, max(signed_bits.y, signed_bits.z)) > 0;
+    return !(negative && positive);
+}
+
+// Where a ray that passes within a triangle's edges meets it; false, and no values, if it is seen exactly edge-on. Both windings are met.
+bool gridwalk_meet_triangle(GridwalkMovedRay ray, GridwalkCorners corners, vec3 edges, precise out float s, precise out float u, precise out float v) {
+    precise float determinant = edges.x + edges.y + edges.z;
     // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
     // for planes along the axes, and never beyond the triangle's vertices.
-    precise vec3 e1 = b - a;
-    precise vec3 e2 = c - a;
+    precise vec3 a = corners.a;
+    precise vec3 e1 = corners.b - a;
+    precise vec3 e2 = corners.c - a;
     precise vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     precise float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
-    if (abs(facing) < GRIDWALK_LEAST_NORMAL) {
-        return false;
-    }
     precise float along = (normal.x * a.x + normal.y * a.y + normal.z * a.z) / facing;
-    s = min(max(along, min(a.z, min(b.z, c.z))), max(a.z, max(b.z, c.z))) * ray.shear.z;
+    s = min(max(along, min(a.z, min(corners.b.z, corners.c.z))), max(a.z, max(corners.b.z, corners.c.z))) * ray.shear.z;
     precise float inverse = 1.0 / determinant;
-    u = edge_v * inverse;
-    v = edge_w * inverse;
-    return true;
+    u = edges.y * inverse;
+    v = edges.z * inverse;
+    // The inverse of a denormal may be infinite.
+    return abs(determinant) >= GRIDWALK_LEAST_NORMAL && abs(facing) >= GRIDWALK_LEAST_NORMAL;
+}
+
+// Whether the ray's line meets the triangle; s, u and v are set if so.
+bool gridwalk_intersect_triangle(GridwalkMovedRay ray, GridwalkCorners corners, precise out float s, precise out float u, precise out float v) {
+    precise vec3 edges = gridwalk_edge_functions(ray, corners);
+    return gridwalk_is_inside(edges) && gridwalk_meet_triangle(ray, corners, edges, s, u, v);
 }
 
 #endif
 
 struct GridwalkWalk {
     GridwalkMovedRay ray;
+    vec3 from_low; // the ray's origin, seen from the grid's lower corner
     vec3 inverse; // of the direction; 0 where that is 0
-    vec3 never; // added to the distances: beyond any where the direction is 0
+    vec3 at_zero; // s where a coordinate is 0; beyond any where the direction is 0
     bvec3 up; // the direction is positive
+    ivec3 one_up; // 1 where it is, else 0
     ivec3 cell; // fine
-    ivec3 low; // block of fine cells: [low, high)
-    ivec3 high;
-    vec3 boundaries; // s of the boundary ahead along each axis
+    ivec3 edge; // the boundary of the block ahead along each axis, by the fine cell above it
     float exit;
     uint reference; // next in the cell's list
     uint list_end;
@@ -319,6 +342,11 @@ const float GRIDWALK_BEYOND = 3.0e38;
 
 ivec3 gridwalk_select(bvec3 which, ivec3 yes, ivec3 no) {
     return ivec3(which.x ? yes.x : no.x, which.y ? yes.y : no.y, which.z ? yes.z : no.z);
+}
+
+// s of the boundary of the block ahead along each axis.
+precise vec3 gridwalk_walk_boundaries(GridwalkWalk walk, GridwalkGridHeader grid) {
+    return gridwalk_boundary(grid.box_min, grid.fine_cell_size, vec3(walk.edge)) * walk.inverse + walk.at_zero;
 }
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
@@ -345,21 +373,20 @@ void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader gri
         walk.list_end = range.y;
     }
     int reach = int(brick.distance);
-    bool jump = reach != 0;
     // Of a jump the cells' shift is still the first level's.
-    ivec3 block = walk.cell >> shift;
-    walk.low = (jump ? max((at - ivec3(reach - 1)) << 2, ivec3(0)) : block) << shift;
-    walk.high = (jump ? min((at + ivec3(reach)) << 2, ivec3(grid.resolution)) : block + ivec3(1)) << shift;
-    precise vec3 edges = gridwalk_boundary(grid.box_min, grid.fine_cell_size, vec3(gridwalk_select(walk.up, walk.high, walk.low)));
-    walk.boundaries = (edges - walk.ray.origin) * walk.inverse + walk.never;
-    walk.exit = max(walk.exit, min(walk.boundaries.x, min(walk.boundaries.y, walk.boundaries.z)));
+    ivec3 next = (walk.cell >> shift) + walk.one_up;
+    ivec3 beyond = (at + gridwalk_select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2;
+    walk.edge = (reach != 0 ? min(max(beyond, ivec3(0)), ivec3(grid.resolution)) : next) << shift;
+    // As integers: none is below 0 that the maximum does not take.
+    ivec3 boundaries = floatBitsToInt(gridwalk_walk_boundaries(walk, grid));
+    walk.exit = intBitsToFloat(max(floatBitsToInt(walk.exit), min(boundaries.x, min(boundaries.y, boundaries.z))));
 }
 
 ivec3 gridwalk_walk_cell_at(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
     precise vec3 travelled = s * walk.ray.direction;
-    precise vec3 cells = floor((walk.ray.origin + travelled - grid.box_min) * grid.inverse_fine_cell_size);
+    precise vec3 cells = (walk.from_low + travelled) * grid.inverse_fine_cell_size;
     // Clamped as floats: a conversion out of range may give anything.
-    return ivec3(gridwalk_whole(min(max(cells, vec3(0.0)), vec3(grid.resolution << grid.fine_shift) - vec3(1.0))));
+    return ivec3(gridwalk_whole_below(min(max(cells, vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5))));
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
@@ -368,8 +395,11 @@ precise GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedR
     walk.ray = ray;
     bvec3 still = equal(ray.direction, vec3(0.0));
     walk.up = greaterThan(ray.direction, vec3(0.0));
+    walk.one_up = gridwalk_select(walk.up, ivec3(1), ivec3(0));
     walk.inverse = vec3(still.x ? 0.0 : 1.0 / ray.direction.x, still.y ? 0.0 : 1.0 / ray.direction.y, still.z ? 0.0 : 1.0 / ray.direction.z);
-    walk.never = vec3(still.x ? GRIDWALK_BEYOND : 0.0, still.y ? GRIDWALK_BEYOND : 0.0, still.z ? GRIDWALK_BEYOND : 0.0);
+    precise vec3 at_zero = -ray.origin * walk.inverse;
+    walk.at_zero = vec3(still.x ? GRIDWALK_BEYOND : at_zero.x, still.y ? GRIDWALK_BEYOND : at_zero.y, still.z ? GRIDWALK_BEYOND : at_zero.z);
+    walk.from_low = ray.origin - grid.box_min;
     walk.cell = gridwalk_walk_cell_at(walk, grid, 0.0);
     walk.exit = 0.0;
     walk.best_s = ray.s_max;
@@ -384,17 +414,15 @@ precise GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedR
 
 // Into the next block; false outside of the grid.
 bool gridwalk_walk_step(precise inout GridwalkWalk walk, GridwalkGridHeader grid) {
-    bool x = walk.boundaries.x <= walk.boundaries.y && walk.boundaries.x <= walk.boundaries.z;
-    bool y = !x && walk.boundaries.y <= walk.boundaries.z;
-    bvec3 along = bvec3(x, y, !x && !y);
-    ivec3 last = walk.high - ivec3(1);
+    precise vec3 boundaries = gridwalk_walk_boundaries(walk, grid);
+    bool x = boundaries.x <= boundaries.y && boundaries.x <= boundaries.z;
+    bool y = !x && boundaries.y <= boundaries.z;
+    ivec3 last = walk.edge - walk.one_up;
     ivec3 inside = gridwalk_walk_cell_at(walk, grid, walk.exit);
-    inside = min(max(inside, gridwalk_select(walk.up, walk.cell, walk.low)), gridwalk_select(walk.up, last, walk.cell));
-    ivec3 beyond = gridwalk_select(walk.up, walk.high, walk.low - ivec3(1));
-    walk.cell = gridwalk_select(along, beyond, inside);
-    int coordinate = x ? walk.cell.x : (y ? walk.cell.y : walk.cell.z);
-    uint count = (x ? grid.resolution.x : (y ? grid.resolution.y : grid.resolution.z)) << grid.fine_shift;
-    if (uint(coordinate) >= count) {
+    inside = min(max(inside, min(walk.cell, last)), max(walk.cell, last));
+    ivec3 beyond = last + 2 * walk.one_up - ivec3(1);
+    walk.cell = gridwalk_select(bvec3(x, y, !x && !y), beyond, inside);
+    if (any(greaterThanEqual(uvec3(walk.cell), grid.resolution << grid.fine_shift))) {
         return false;
     }
     gridwalk_walk_enter(walk, grid);
@@ -409,12 +437,20 @@ bool gridwalk_walk_improves(GridwalkWalk walk, float s, uint triangle) {
     return s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle));
 }
 
-bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint triangle, precise out float s, precise out float u, precise out float v) {
+// The next of the cell's list, by its first vertex.
+uint gridwalk_walk_take(precise inout GridwalkWalk walk, GridwalkGridHeader grid) {
+    uint vertex = GridwalkReferences(grid.references).vertex[walk.reference];
+    walk.reference += 1u;
+    return vertex;
+}
+
+precise GridwalkCorners gridwalk_walk_corners(GridwalkWalk walk, GridwalkGridHeader grid, uint vertex) {
     GridwalkTriangles triangles = GridwalkTriangles(grid.triangles);
-    precise vec3 v0 = triangles.vertex[3u * triangle].xyz;
-    precise vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
-    precise vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
-    return gridwalk_intersect_triangle(walk.ray, v0, v1, v2, s, u, v) && gridwalk_walk_improves(walk, s, triangle);
+    return gridwalk_corners_of(walk.ray, triangles.vertex[vertex].xyz, triangles.vertex[vertex + 1u].xyz, triangles.vertex[vertex + 2u].xyz);
+}
+
+bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint vertex, precise out float s, precise out float u, precise out float v) {
+    return gridwalk_intersect_triangle(walk.ray, gridwalk_walk_corners(walk, grid, vertex), s, u, v) && gridwalk_walk_improves(walk, s, vertex / 3u);
 }
 
 // The id of a triangle's geometry, and the triangle's number within it.
@@ -424,10 +460,9 @@ uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
 }
 
 // Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
-bool gridwalk_sees_front(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-    precise vec3 a = gridwalk_permute(ray, v0 - ray.origin);
-    precise vec3 e1 = gridwalk_permute(ray, v1 - ray.origin) - a;
-    precise vec3 e2 = gridwalk_permute(ray, v2 - ray.origin) - a;
+bool gridwalk_sees_front(GridwalkMovedRay ray, GridwalkCorners corners) {
+    precise vec3 e1 = corners.b - corners.a;
+    precise vec3 e2 = corners.c - corners.a;
     precise vec3 normal = vec3(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     precise float facing = normal.x * ray.shear.x + normal.y * ray.shear.y + normal.z;
     return (facing < 0.0) == (ray.shear.z > 0.0);
@@ -443,9 +478,7 @@ bool gridwalk_walk_accepts(GridwalkWalk walk, GridwalkGridHeader grid, uint tria
         return true;
     }
     uint flags = words.vertex[3u * triangle].w;
-    GridwalkTriangles triangles = GridwalkTriangles(grid.triangles);
-    bool front = gridwalk_sees_front(walk.ray, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
-                            triangles.vertex[3u * triangle + 2u].xyz);
+    bool front = gridwalk_sees_front(walk.ray, gridwalk_walk_corners(walk, grid, 3u * triangle));
     front = front != ((flags & GRIDWALK_TRIANGLE_FLIPPED) != 0u);
     bool culled = (walk.cull & (front ? GRIDWALK_CULL_FRONT : GRIDWALK_CULL_BACK)) != 0u;
     return !culled || (flags & GRIDWALK_TRIANGLE_TWO_SIDED) != 0u;
@@ -512,13 +545,12 @@ bool gridwalk_turn(precise inout GridwalkCandidates candidates) {
     if (candidates.unfinished) {
         candidates.searching = false;
     } else if (candidates.walk.reference < candidates.walk.list_end) {
-        uint triangle = GridwalkReferences(candidates.grid.references).triangle[candidates.walk.reference];
-        candidates.walk.reference += 1u;
+        uint vertex = gridwalk_walk_take(candidates.walk, candidates.grid);
         precise float u;
         precise float v;
-        if (gridwalk_walk_test(candidates.walk, candidates.grid, triangle, candidates.s, u, v)
-            && gridwalk_walk_accepts(candidates.walk, candidates.grid, triangle)) {
-            candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle);
+        if (gridwalk_walk_test(candidates.walk, candidates.grid, vertex, candidates.s, u, v)
+            && gridwalk_walk_accepts(candidates.walk, candidates.grid, vertex / 3u)) {
+            candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, vertex / 3u);
             return true;
         }
     } else if (gridwalk_walk_is_over(candidates.walk) || !gridwalk_walk_step(candidates.walk, candidates.grid)) {

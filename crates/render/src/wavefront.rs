@@ -84,7 +84,8 @@ const CONTINUATIONS: usize = gridwalk::plan::CONTINUATIONS as usize;
 
 impl Masked {
     fn new(context: &Context, kernel: &'static gridwalk::kernel::Kernel) -> Result<Masked> {
-        let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last)]);
+        let by_component = u32::from(context.is_cpu());
+        let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last), ("BY_COMPONENT", by_component)]);
         Ok(Masked { first: variant(0, 0)?, again: variant(1, 0)?, last: variant(1, 1)? })
     }
 

@@ -22,23 +22,17 @@ layout(push_constant, std430) uniform LightPass {
 bool owns_edge(float along_x, float along_y) { return along_y > 0.0 || (along_y == 0.0 && along_x > 0.0); }
 
 // A ray through an edge meets both of its triangles, which together are one surface. Only for a triangle that the ray's line meets.
-bool owns_hit(MovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-    vec3 a = permute(ray, v0 - ray.origin);
-    vec3 b = permute(ray, v1 - ray.origin);
-    vec3 c = permute(ray, v2 - ray.origin);
-    float ax = a.x - ray.shear.x * a.z;
-    float ay = a.y - ray.shear.y * a.z;
-    float bx = b.x - ray.shear.x * b.z;
-    float by = b.y - ray.shear.y * b.z;
-    float cx = c.x - ray.shear.x * c.z;
-    float cy = c.y - ray.shear.y * c.z;
-    float edge_u = cx * by - cy * bx;
-    float edge_v = ax * cy - ay * cx;
-    float edge_w = bx * ay - by * ax;
-    float side = edge_u + edge_v + edge_w < 0.0 ? -1.0 : 1.0;
-    return (edge_u != 0.0 || owns_edge((cx - bx) * side, (cy - by) * side))
-        && (edge_v != 0.0 || owns_edge((ax - cx) * side, (ay - cy) * side))
-        && (edge_w != 0.0 || owns_edge((bx - ax) * side, (by - ay) * side));
+bool owns_hit(MovedRay ray, Corners corners) {
+    vec3 a = corners.a;
+    vec3 b = corners.b;
+    vec3 c = corners.c;
+    vec3 edges = edge_functions(ray, corners);
+    float side = edges.x + edges.y + edges.z < 0.0 ? -1.0 : 1.0;
+    vec2 to_b = (b.xy - ray.shear.xy * b.z) - (a.xy - ray.shear.xy * a.z);
+    vec2 to_c = (c.xy - ray.shear.xy * c.z) - (b.xy - ray.shear.xy * b.z);
+    vec2 to_a = (a.xy - ray.shear.xy * a.z) - (c.xy - ray.shear.xy * c.z);
+    return (edges.x != 0.0 || owns_edge(to_c.x * side, to_c.y * side)) && (edges.y != 0.0 || owns_edge(to_a.x * side, to_a.y * side))
+        && (edges.z != 0.0 || owns_edge(to_b.x * side, to_b.y * side));
 }
 
 // The share of the light that a candidate lets through.
@@ -47,9 +41,7 @@ float candidate_share(Walk walk, GridHeader header, uint triangle, float u, floa
     if ((material.flags & MATERIAL_BLEND) == 0u) {
         return is_solid(scene, triangle, u, v) ? 0.0 : 1.0;
     }
-    Triangles triangles = Triangles(header.triangles);
-    bool owned = owns_hit(walk.ray, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
-                          triangles.vertex[3u * triangle + 2u].xyz);
+    bool owned = owns_hit(walk.ray, walk_corners(walk, header, 3u * triangle));
     return owned ? 1.0 - blended_opacity(scene, material, triangle, u, v) : 1.0;
 }
 
@@ -66,13 +58,12 @@ bool pass_run(inout Walk walk, GridHeader header, inout float entry, inout float
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
-            uint triangle = References(header.references).triangle[walk.reference];
+            uint vertex = walk_take(walk, header);
             float s;
             float u;
             float v;
-            walk.reference += 1u;
-            if (walk_test(walk, header, triangle, s, u, v) && s > entry && s <= walk.exit) {
-                share *= candidate_share(walk, header, triangle, u, v);
+            if (walk_test(walk, header, vertex, s, u, v) && s > entry && s <= walk.exit) {
+                share *= candidate_share(walk, header, vertex / 3u, u, v);
                 if (share == 0.0) {
                     return true;
                 }

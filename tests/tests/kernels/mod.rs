@@ -32,6 +32,7 @@ pub const ODD: Shape = Shape {
     sort_keys: 7,
     sort_alone: true,
     emit_pairs: 5,
+    by_component: false,
 };
 
 /// So small that a few hundred thousand elements fill more than 65,535 workgroups. The scan's tiles are larger, since its one-workgroup
@@ -47,6 +48,7 @@ pub const TINY: Shape = Shape {
     sort_keys: 1,
     sort_alone: false,
     emit_pairs: 1,
+    by_component: true,
 };
 
 /// All shapes under test.

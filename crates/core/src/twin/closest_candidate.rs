@@ -40,7 +40,7 @@ pub fn gridwalk_next(grid: &Grid, candidates: &mut GridwalkCandidates) -> bool {
         }
         candidates.turns += 1;
         if walk.reference < walk.list_end {
-            let triangle = grid.references[walk.reference as usize];
+            let triangle = grid.references[walk.reference as usize] / 3;
             walk.reference += 1;
             if let Some(Intersection { s, u, v }) = walk_test(walk, grid, triangle).filter(|_| walk_accepts(walk, grid, triangle)) {
                 candidates.s = s;

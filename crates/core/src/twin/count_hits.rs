@@ -22,7 +22,7 @@ fn count_run(walk: &mut Walk, grid: &Grid, entry: &mut f32, count: &mut u32) -> 
         }
         let stop = walk.list_end.min(walk.reference + TESTS_EACH_TURN);
         while walk.reference < stop {
-            let triangle = grid.references[walk.reference as usize];
+            let triangle = grid.references[walk.reference as usize] / 3;
             walk.reference += 1;
             let hit = walk_test(walk, grid, triangle).filter(|hit| hit.s > *entry && hit.s <= walk.exit);
             *count += u32::from(hit.is_some() && walk_accepts(walk, grid, triangle));

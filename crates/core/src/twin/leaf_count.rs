@@ -37,11 +37,11 @@ impl Leaves<'_> {
         Listed { owner: owner as u32, split, place: reference - split.first_reference }
     }
 
-    /// The box of leaf cells, and those that the triangle overlaps.
-    fn overlapped(&self, split: &SplitCell, triangle: u32) -> Option<(CellBox, Vec<u32>)> {
+    /// The box of leaf cells, and those that the triangle of this first vertex overlaps.
+    fn overlapped(&self, split: &SplitCell, vertex: u32) -> Option<(CellBox, Vec<u32>)> {
         let fine = refined(self.grid, split.level);
         let v: [Vec3; 3] = std::array::from_fn(|i| {
-            let [x, y, z, _] = self.triangles[3 * triangle as usize + i];
+            let [x, y, z, _] = self.triangles[vertex as usize + i];
             [x, y, z]
         });
         let (cells, test) = leaf_box(&fine, split, self.exact, v)?;
@@ -94,10 +94,10 @@ pub fn leaf_emit(shape: &Shape, groups: [u32; 3], leaves: &Leaves, references: &
         if place == 0 && split.level != 0 {
             cells[split.cell as usize] = [leaves.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level];
         }
-        let triangle = references[(split.list_begin + place) as usize];
-        for (cells, n) in leaves.overlapped(split, triangle).into_iter().flat_map(|(cells, all)| all.into_iter().map(move |n| (cells, n))) {
+        let vertex = references[(split.list_begin + place) as usize];
+        for (cells, n) in leaves.overlapped(split, vertex).into_iter().flat_map(|(cells, all)| all.into_iter().map(move |n| (cells, n))) {
             let local = cells.cell(n).map(|i| i & ((1 << split.level) - 1));
-            pairs.push((split.leaf_begin + cell_id(local, [1 << split.level; 3]), triangle));
+            pairs.push((split.leaf_begin + cell_id(local, [1 << split.level; 3]), vertex));
         }
     }
     pairs

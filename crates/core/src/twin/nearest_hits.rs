@@ -57,7 +57,7 @@ impl Search<'_> {
             }
             let stop = walk.list_end.min(walk.reference + TESTS_EACH_TURN);
             while walk.reference < stop {
-                let triangle = grid.references[walk.reference as usize];
+                let triangle = grid.references[walk.reference as usize] / 3;
                 walk.reference += 1;
                 let (floor_s, floor_triangle) = self.floor;
                 let beyond = |hit: &Intersection| hit.s > floor_s || (hit.s == floor_s && triangle > floor_triangle);
@@ -91,9 +91,7 @@ pub fn nearest_hits_of(grid: &Grid, ray: &Ray, hits: &mut [Hit], saved: &mut Wal
         }
         let mut walk = Walk { filter: launch.filter, ..walk_begin(grid, moved) };
         if launch.continues {
-            walk_restore(&mut walk, grid, &WalkState { reference: 0, ..*saved });
-            search.list_begin = grid.cells[saved.cell as usize][0];
-            walk.reference = saved.reference;
+            search.list_begin = walk_restore(&mut walk, grid, saved);
         } else {
             search.list_begin = walk.reference;
         }

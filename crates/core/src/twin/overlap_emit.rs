@@ -44,7 +44,7 @@ pub fn overlap_emit(shape: &Shape, groups: [u32; 3], emission: &mut Emission) {
         let pairs = emission.offsets[triangle]..emission.pair_count;
         for (pair, n) in pairs.zip((0..u32::BITS).filter(|n| (mask >> n) & 1 != 0)) {
             emission.keys[pair as usize] = cell_id(cells.cell(n), emission.grid.resolution);
-            emission.values[pair as usize] = triangle as u32;
+            emission.values[pair as usize] = 3 * triangle as u32;
         }
     }
 }
@@ -65,7 +65,7 @@ pub fn overlap_emit_large(shape: &Shape, groups: [u32; 3], exact: bool, emission
             let cell = cells.cell(pair - ends[0]);
             let overlaps = !test || axes.meets(cell);
             emission.keys[pair as usize] = if overlaps { cell_id(cell, emission.grid.resolution) } else { emission.grid.cell_count };
-            emission.values[pair as usize] = triangle as u32;
+            emission.values[pair as usize] = 3 * triangle as u32;
         }
     }
 }
