@@ -475,7 +475,9 @@ impl Gpu {
         built.info.timestamps = Some(Timestamps { pool, first_query: FIRST });
         self.rebuild(built);
         built.info.timestamps = None;
-        let mut stamps = vec![0u64; count as usize];
+        let leaf_cells = if built.info.second_level { built.info.capacity.leaf_cells } else { 0 };
+        let steps = self.tracer.build_steps(&Capacity { leaf_cells, ..built.info.capacity });
+        let mut stamps = vec![0u64; steps.len() + 1];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
         // SAFETY: the build reset and wrote these queries, and has ended.
         unsafe {
@@ -506,6 +508,7 @@ impl Gpu {
             report: report_memory.region(),
             capacity,
             options,
+            second_level: true,
             timestamps: None,
         };
         Built { info, report: bytemuck::Zeroable::zeroed(), grid, scratch, report_memory, positions, indices }

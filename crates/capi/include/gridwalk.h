@@ -590,6 +590,12 @@ typedef struct GridwalkBuildInfo {
      * Pool of type `VK_QUERY_TYPE_TIMESTAMP` for the times of the steps, or `VK_NULL_HANDLE`.
      */
     VkQueryPool timestamp_pool;
+    /**
+     * `VK_TRUE`: the steps of the second level are not recorded, whose launches take time even where no cell is to be split. The grid is
+     * complete and flat, and the report counts the cells and leaf cells that there would be. Steps and timestamps are
+     * those of a capacity without leaf cells.
+     */
+    VkBool32 without_second_level;
 } GridwalkBuildInfo;
 
 /**

@@ -303,6 +303,7 @@ pub unsafe extern "C" fn gridwalk_cmd_build(
         let (grid, scratch, report) = (info.grid.into(), info.scratch.into(), info.report.into());
         let build = BuildInfo {
             options: build_options(&info)?,
+            second_level: info.without_second_level == vk::FALSE,
             timestamps: (info.timestamp_pool != vk::QueryPool::null())
                 .then_some(Timestamps { pool: info.timestamp_pool, first_query: info.first_query }),
             ..BuildInfo::new(input(&info)?, grid, scratch, report, (&info.capacity).into())

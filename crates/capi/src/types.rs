@@ -289,6 +289,10 @@ pub struct GridwalkBuildInfo {
     pub first_query: u32,
     /// Pool of type `VK_QUERY_TYPE_TIMESTAMP` for the times of the steps, or `VK_NULL_HANDLE`.
     pub timestamp_pool: VkQueryPool,
+    /// `VK_TRUE`: the steps of the second level are not recorded, whose launches take time even where no cell is to be split. The grid is
+    /// complete and flat, and the report counts the cells and leaf cells that there would be. Steps and timestamps are
+    /// those of a capacity without leaf cells.
+    pub without_second_level: VkBool32,
 }
 
 /// A trace of rays through a grid. What is not for a query is zero.

@@ -258,6 +258,8 @@ pub struct BuildInputs {
     pub resolution: Option<[u32; 3]>,
     /// Whether cells are listed by exact overlap.
     pub exact: bool,
+    /// Whether cells with many triangles are split, if the capacity has leaf cells.
+    pub second_level: bool,
 }
 
 const SCAN_OFFSETS: u32 = 0;
@@ -461,7 +463,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
             padding: 0,
         },
     ));
-    let splits = capacity.leaf_cells > 0;
+    let splits = inputs.second_level && capacity.leaf_cells > 0;
     plan.barrier(if splits { Barrier::ShaderAndIndirect } else { Barrier::Shader });
     plan.step(Step::new(&BRICK_DISTANCE_Y, bricks, push::BrickDistanceY { grid, distances_x: x, distances: y }));
     if splits {

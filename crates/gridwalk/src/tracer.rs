@@ -161,6 +161,10 @@ pub struct BuildInfo {
     pub capacity: Capacity,
     /// How it is built.
     pub options: BuildOptions,
+    /// Whether cells with far more triangles than others are split, if the capacity has leaf cells. Otherwise the steps of the second level are
+    /// not recorded, whose launches take time even where no cell is to be split; the grid is complete and flat, and the report counts the cells
+    /// and leaf cells that there would be, so that a scene that moves can have the second level once it needs it.
+    pub second_level: bool,
     /// Times of the steps, if wanted: [`BuildSizes::timestamp_count`] queries.
     pub timestamps: Option<Timestamps>,
 }
@@ -169,7 +173,8 @@ impl BuildInfo {
     /// A build with the options that stand for themselves. What is set beside is best put around it, since fields may be added:
     /// `BuildInfo { options, ..BuildInfo::new(input, grid, scratch, report, capacity) }`.
     pub fn new(input: impl Into<Input>, grid: Region, scratch: Region, report: Region, capacity: Capacity) -> BuildInfo {
-        BuildInfo { input: input.into(), grid, scratch, report, capacity, options: BuildOptions::default(), timestamps: None }
+        let options = BuildOptions::default();
+        BuildInfo { input: input.into(), grid, scratch, report, capacity, options, second_level: true, timestamps: None }
     }
 }
 
@@ -475,10 +480,11 @@ impl Tracer {
     }
 
     /// The steps of a build, in order of its timestamps: step i runs between timestamps i and i + 1. A build of records runs `geometry_scan`
-    /// and `gather_records` in place of the first, `gather`.
+    /// and `gather_records` in place of the first, `gather`. A build without [`BuildInfo::second_level`] has the steps of a capacity without leaf
+    /// cells; it writes as many timestamps less.
     pub fn build_steps(&self, capacity: &Capacity) -> Vec<&'static Kernel> {
         let source = Source::Mesh { triangle_count: 0, vertex_count: 0 };
-        let inputs = BuildInputs { source, density: 1.0, resolution: None, exact: false };
+        let inputs = BuildInputs { source, density: 1.0, resolution: None, exact: false, second_level: true };
         plan::build_plan(capacity, &inputs, &self.shape).steps().map(|step| step.kernel).collect()
     }
 
@@ -515,8 +521,13 @@ impl Tracer {
         check_region("scratch", &info.scratch, scratch.size, REGION_ALIGNMENT)?;
         check_indirect("scratch", &info.scratch)?;
         check_region("report", &info.report, REPORT_SIZE, REGION_ALIGNMENT)?;
-        let inputs =
-            BuildInputs { source, density: options.density, resolution: options.resolution, exact: options.overlap == Overlap::Exact };
+        let inputs = BuildInputs {
+            source,
+            density: options.density,
+            resolution: options.resolution,
+            exact: options.overlap == Overlap::Exact,
+            second_level: info.second_level,
+        };
         let plan = plan::build_plan(capacity, &inputs, &self.shape);
         // SAFETY: the caller's contract; the plan stays inside of the regions that were checked above.
         unsafe { self.record(cmd, plan.items(), |buffer| self.build_region(info, buffer), info.timestamps) };

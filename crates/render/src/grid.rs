@@ -78,12 +78,13 @@ pub struct Grid {
     lowered_for: Option<u32>,
     /// Whether more room for leaf cells is to be taken where they overflow: not once that has failed.
     may_grow: bool,
+    /// Whether the last build found cells to split: if not, the next one is recorded without the second level.
+    second_level: bool,
     capacity: Capacity,
     grid: Buffer,
     scratch: Option<Buffer>,
     report: Buffer,
     queries: Queries,
-    query_count: u32,
     stats: BuildStats,
 }
 
@@ -267,12 +268,12 @@ impl GridBuilder {
             },
             report: buffer("build report", sizes.report.size, BufferKind::Readback, false)?,
             queries: Queries::new(context, sizes.timestamp_count)?,
-            query_count: sizes.timestamp_count,
             engine: Arc::clone(&self.engine),
             wanted: settings,
             settings,
             lowered_for: None,
             may_grow: true,
+            second_level: true,
             capacity,
             grid,
             scratch: Some(scratch),
@@ -415,6 +416,18 @@ impl Grid {
     }
 
     fn run(&mut self, geometry: &Geometry) -> Result<()> {
+        self.stats.steps.clear();
+        self.stats.ms = 0.0;
+        let was_left_out = self.settings.split && !self.second_level;
+        self.run_once(geometry)?;
+        // At once, so that no grid depends on those that were built before it.
+        match was_left_out && self.second_level {
+            true => self.run_once(geometry),
+            false => Ok(()),
+        }
+    }
+
+    fn run_once(&mut self, geometry: &Geometry) -> Result<()> {
         let Some(scratch) = &self.scratch else { return Ok(()) };
         let BuildSettings { density, resolution, overlap, split: _ } = self.settings;
         let info = BuildInfo {
@@ -424,6 +437,7 @@ impl Grid {
             report: self.report.region(),
             capacity: self.capacity,
             options: BuildOptions { density, resolution, overlap },
+            second_level: self.second_level,
             timestamps: self.queries.timestamps(),
         };
         let tracer = self.engine.tracer()?;
@@ -436,10 +450,11 @@ impl Grid {
         if let Some(report) = self.report.read::<Report>(0, 1)?.first() {
             self.stats.report = *report;
         }
-        let stamps = self.queries.read(self.query_count)?;
-        self.stats.steps.clear();
-        self.stats.ms = 0.0;
-        for (kernel, pair) in tracer.build_steps(&self.capacity).iter().zip(stamps.windows(2)) {
+        let leaf_cells = if self.second_level { self.capacity.leaf_cells } else { 0 };
+        let steps = tracer.build_steps(&Capacity { leaf_cells, ..self.capacity });
+        let stamps = self.queries.read(steps.len() as u32 + 1)?;
+        self.second_level = self.stats.report.split_cells > 0;
+        for (kernel, pair) in steps.iter().zip(stamps.windows(2)) {
             let ms = self.queries.milliseconds(pair[0], pair[1]);
             self.stats.ms += ms;
             add_step(&mut self.stats.steps, StepTime { name: kernel.name, kind: kernel.kind.name(), ms, count: 1 });

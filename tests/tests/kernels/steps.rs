@@ -127,8 +127,9 @@ fn first_wrong_step(gpu: &Gpu, mesh: &Mesh, capacity: Capacity, options: BuildOp
 /// Likewise, of a build that is prepared; `given` puts its input into the player's memory.
 fn first_wrong_step_of(gpu: &Gpu, built: &Built, source: Source, spoiled: Option<&str>, given: impl FnOnce(&mut Memory)) -> Option<String> {
     let shape = gpu.tracer.shape();
-    let BuildInfo { capacity, options, .. } = built.info;
-    let inputs = BuildInputs { source, density: options.density, resolution: options.resolution, exact: options.overlap == Overlap::Exact };
+    let BuildInfo { capacity, options, second_level, .. } = built.info;
+    let exact = options.overlap == Overlap::Exact;
+    let inputs = BuildInputs { source, density: options.density, resolution: options.resolution, exact, second_level };
     let plan = build_plan(&capacity, &inputs, &shape);
     let bricks = gpu.tracer.build_region(&built.info, Buffer::Bricks).size / 16;
     let sizes = [capacity.triangles, capacity.cells, capacity.pairs, capacity.leaf_cells, bricks as u32];

@@ -18,10 +18,15 @@ fn builds() -> Vec<(String, Plan)> {
         for bits in 0..=28 {
             let mesh = |triangle_count| Source::Mesh { triangle_count, vertex_count: 3 };
             let records = Source::Records { record_count: 7 };
-            for (source, exact) in [(mesh(0), false), (mesh(1), true), (mesh(1_000_000), false), (records, true)] {
-                let capacity = Capacity { triangles: 1_000_000, cells: 1 << bits, pairs: 1_000, leaf_cells: 0 };
-                let inputs = BuildInputs { source, density: 8.0, resolution: None, exact };
-                plans.push((format!("2^{bits} cells, {inputs:?}, {shape:?}"), build_plan(&capacity, &inputs, &shape)));
+            for (leaf_cells, second_level) in [(0, true), (1 << bits, false), (1 << bits, true)] {
+                for (source, exact) in [(mesh(0), false), (mesh(1), true), (mesh(1_000_000), false), (records, true)] {
+                    let capacity = Capacity { triangles: 1_000_000, cells: 1 << bits, pairs: 1_000, leaf_cells };
+                    let inputs = BuildInputs { source, density: 8.0, resolution: None, exact, second_level };
+                    plans.push((
+                        format!("2^{bits} cells, {leaf_cells} leaf cells, {inputs:?}, {shape:?}"),
+                        build_plan(&capacity, &inputs, &shape),
+                    ));
+                }
             }
         }
     }
@@ -162,8 +167,8 @@ fn plans_have_the_passes_of_their_capacity() {
     for shape in SHAPES {
         for bits in 0..=28u32 {
             let capacity = Capacity { triangles: 1, cells: 1 << bits, pairs: 1, leaf_cells: 0 };
-            let inputs =
-                BuildInputs { source: Source::Mesh { triangle_count: 1, vertex_count: 3 }, density: 8.0, resolution: None, exact: true };
+            let source = Source::Mesh { triangle_count: 1, vertex_count: 3 };
+            let inputs = BuildInputs { source, density: 8.0, resolution: None, exact: true, second_level: true };
             let plan = build_plan(&capacity, &inputs, &shape);
             let scatters = plan.steps().filter(|step| step.kernel.name == "sort_scatter").count() as u32;
             assert_eq!(scatters, bits.div_ceil(shape.sort_bits), "2^{bits} cells, {shape:?}");

@@ -1,12 +1,14 @@
 //! The second level: grids whose cells with many triangles are split, against the flat grid of the same triangles and double precision.
 
-use gridwalk::{BuildOptions, Capacity, Overlap};
+use gridwalk::{BuildOptions, Capacity, Overlap, Report};
 use gridwalk_core::grid::{cell_id, cell_of};
 use gridwalk_core::layout::{CELL_LEVEL, CELL_SPLIT, GridHeader};
 use gridwalk_core::split::{LEAST_SPLIT, LEAST_SPLIT_OF_LONG};
 use gridwalk_tests::gpu::{Built, Gpu, Mesh};
 use gridwalk_tests::meshes::soup;
 use gridwalk_tests::random::Random;
+
+use crate::traverse::rays::random_rays;
 
 use super::invariants::{Double, cell_box, overlaps};
 
@@ -133,6 +135,38 @@ fn without_room_for_pairs_no_cell_is_split() {
             let count = flat.report.cells as usize;
             assert_eq!(built.cells()[..count], flat.cells()[..count]);
         }
+    }
+}
+
+/// A build without the steps of the second level counts what they would do, and makes a flat grid.
+#[test]
+fn a_second_level_that_is_left_out_is_counted() {
+    let gpu = Gpu::shared();
+    let mesh = crowd(3_000, 9);
+    let options = BuildOptions { resolution: Some([9, 8, 7]), ..BuildOptions::default() };
+    let room = Capacity { triangles: 10_000, cells: 10_000, pairs: 1 << 20, leaf_cells: 1 << 18 };
+    let whole = gpu.build(&mesh, room, options);
+    let flat = gpu.build(&mesh, Capacity { leaf_cells: 0, ..room }, options);
+    let rays = random_rays(&mesh, 2_000, 9);
+    for leaf_cells in [room.leaf_cells, 100] {
+        let mut built = gpu.prepare(&mesh, Capacity { leaf_cells, ..room }, options);
+        built.info.second_level = false;
+        gpu.rebuild(&mut built);
+        assert_eq!(built.report.leaves_overflowed(), leaf_cells == 100);
+        assert!(built.report.split_cells > 0 && whole.report.leaf_pairs > 0);
+        assert_eq!(Report { overflow: 0, ..built.report }, Report { leaf_pairs: 0, ..whole.report });
+        let count = flat.report.cells as usize;
+        assert_eq!(built.cells()[..count], flat.cells()[..count]);
+        let hits = gpu.closest(&built, &rays);
+        assert!(hits.iter().filter(|hit| hit.is_hit()).count() > 200);
+        assert_eq!(hits, gpu.closest(&flat, &rays));
+        assert_eq!(hits, gpu.closest(&whole, &rays));
+        let without = gpu.tracer.build_steps(&Capacity { leaf_cells: 0, ..room }).len();
+        assert!(gpu.timestamps(&mut built).is_none_or(|stamps| stamps.len() == without + 1));
+        // Again with it, in the same memory.
+        built.info.second_level = true;
+        gpu.rebuild(&mut built);
+        assert_eq!(built.report.leaf_pairs > 0, leaf_cells == room.leaf_cells);
     }
 }
 

@@ -189,6 +189,28 @@ fn room_for_leaf_cells_is_found_and_kept() {
     assert_eq!(flat.stats().report.pairs, report.pairs);
 }
 
+/// The second level costs nothing where no cell is split, and is back with the first build that splits one.
+#[test]
+fn the_second_level_comes_and_goes() {
+    let context = Context::new(&ContextDesc::default()).unwrap();
+    let [crowded, even] =
+        [crowded(), scene(vec![(generate::plane([1.0; 2], 40), matt(0.5))])].map(|scene| GpuScene::upload(&context, &scene).unwrap());
+    let builder = GridBuilder::new(&context).unwrap();
+    let splits = |grid: &Grid| grid.stats().steps.iter().any(|step| step.name == "leaf_count") || !context.has_timestamps();
+    let mut grid = builder.build(&crowded, &BuildSettings::default()).unwrap();
+    let first = grid.stats().report;
+    assert!(first.leaf_pairs > 0 && splits(&grid));
+    for turn in 0..2 {
+        for has_second_level in [true, false, false] {
+            grid.rebuild(&even).unwrap();
+            assert_eq!((grid.stats().report.split_cells, splits(&grid)), (0, has_second_level || !context.has_timestamps()), "{turn}");
+        }
+        grid.rebuild(&crowded).unwrap();
+        assert_eq!((grid.stats().report, grid.stats().attempts), (first, 1));
+        assert!(splits(&grid));
+    }
+}
+
 /// Cells that large triangles fill have little use for leaf cells: not all that they ask for is taken, and no rebuild tries again.
 #[test]
 fn leaf_cells_that_need_too_much_are_not_all_made() {
