@@ -262,11 +262,11 @@ pub fn any_hit(kind: &'static str, rays: Vec<Ray>, order: RayOrder) -> Arc<Set> 
     Arc::new(Set { kind, query: Query::Any, rays, sorts: order.sorts(kind) })
 }
 
-/// Median of each step over the runs, all of which have the same steps in the same order.
+/// Median over the runs of each step that the last has: the second level comes and goes.
 pub fn median_steps(runs: &[Vec<StepTime>]) -> Vec<Step> {
-    let Some(first) = runs.first() else { return Vec::new() };
-    let steps = first.iter().enumerate().map(|(index, step)| {
-        let ms = median(runs.iter().filter_map(|run| run.get(index)).map(|step| step.ms));
+    let Some(last) = runs.last() else { return Vec::new() };
+    let steps = last.iter().map(|step| {
+        let ms = median(runs.iter().filter_map(|run| run.iter().find(|other| other.name == step.name)).map(|step| step.ms));
         Step { ms, ..Step::of(step) }
     });
     steps.collect()
