@@ -65,6 +65,7 @@ struct LeafArguments {
     uvec4 table_scan[MAX_PASSES];
     uvec4 table_spine[MAX_PASSES];
     uvec4 cell_ranges;
+    uvec4 distance;
 };
 
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer LeafArgumentsInOut { LeafArguments arguments; };

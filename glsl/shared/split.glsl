@@ -8,6 +8,12 @@
 
 const uint MAX_LEVEL = 5u;
 
+// Least level whose empty leaf cells know how far the nearest is that is not.
+const uint LEAST_MEASURED = 4u;
+
+// The longest such distance: a quarter of the split cell, so that a jump covers at most half of it.
+uint max_leaf_distance(uint level) { return 1u << (level - 2u); }
+
 // Triangles of a list from which on its cell is split: more where lists are long all over, since it is those far longer than the others
 // that rays wait for.
 const uint LEAST_SPLIT = 24u;

@@ -60,20 +60,25 @@ void walk_enter(inout Walk walk, GridHeader grid) {
     uint word = inner.z < 2 ? brick.mask.x : brick.mask.y;
     walk.reference = 0u;
     walk.list_end = 0u;
+    // Or the last leaf cell, as the ray goes, of the empty ones around. What is written in a branch costs all walks a blend on a CPU driver.
+    ivec3 ahead = walk.cell;
     if (((word >> bit) & 1u) != 0u) {
         uvec2 range = Cells(grid.cells).range[cell_id(uvec3(cell), grid.resolution)];
         if ((range.y & CELL_SPLIT) != 0u) {
             int level = int(range.y & CELL_LEVEL);
             shift -= level;
-            ivec3 leaf = (walk.cell >> shift) & ((1 << level) - 1);
+            int last = (1 << level) - 1;
+            ivec3 leaf = (walk.cell >> shift) & last;
             range = Cells(grid.cells).range[range.x + uint(leaf.x + ((leaf.y + (leaf.z << level)) << level))];
+            int empty = range.y == 0u ? max(int(range.x) - 1, 0) : 0;
+            ahead += select(walk.up, min(ivec3(empty), ivec3(last) - leaf), -min(ivec3(empty), leaf)) << shift;
         }
         walk.reference = range.x;
         walk.list_end = range.y;
     }
     int reach = int(brick.distance);
     // Of a jump the cells' shift is still the first level's.
-    ivec3 next = (walk.cell >> shift) + walk.one_up;
+    ivec3 next = (ahead >> shift) + walk.one_up;
     ivec3 beyond = (at + select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2;
     walk.edge = (reach != 0 ? min(max(beyond, ivec3(0)), ivec3(grid.resolution)) : next) << shift;
     // As integers: none is below 0 that the maximum does not take.

@@ -234,6 +234,8 @@ pub struct LeafArguments {
     pub table_spine: [[u32; 4]; MAX_PASSES],
     /// Of `cell_ranges`.
     pub cell_ranges: [u32; 4],
+    /// Of `leaf_distance`.
+    pub distance: [u32; 4],
 }
 
 /// The box of some triangles.

@@ -92,6 +92,11 @@ impl Shape {
         self.scan_size * self.reduce_bricks
     }
 
+    /// Split cells a workgroup of `leaf_distance`, whose loops stay within their budget.
+    pub const fn measured_cells(&self) -> u32 {
+        if self.reduce_bricks < 8 { self.reduce_bricks } else { 8 }
+    }
+
     /// Keys a tile of the sort.
     pub const fn sort_tile(&self) -> u32 {
         if self.sort_alone { self.sort_keys } else { self.sort_size * self.sort_keys }
@@ -128,6 +133,7 @@ impl Shape {
             "SORT_ALONE" => self.sort_alone.into(),
             "SORT_TILE" => self.sort_tile(),
             "SORT_TILES" => self.sort_tiles(),
+            "CELLS_EACH" => self.measured_cells(),
             "PAIRS_EACH" => self.emit_pairs,
             "BY_COMPONENT" => self.by_component.into(),
             _ => return None,

@@ -6,6 +6,8 @@ use crate::vector::{Vec3, power_of_two};
 
 /// Most levels: a cell is split into up to 32^3 leaf cells.
 pub const MAX_LEVEL: u32 = 5;
+/// Least level whose empty leaf cells know how far the nearest is that is not.
+pub const LEAST_MEASURED: u32 = 4;
 /// Triangles of a list from which on its cell is split.
 pub const LEAST_SPLIT: u32 = 24;
 /// The same where lists are long all over.
@@ -22,6 +24,11 @@ pub fn leaf_level(count: u32, least: u32, most: u32) -> u32 {
 /// Leaf cells of a cell.
 pub const fn leaf_count_of(level: u32) -> u32 {
     1 << (3 * level)
+}
+
+/// The longest distance of an empty leaf cell to one that is not; the level is at least [`LEAST_MEASURED`].
+pub const fn max_leaf_distance(level: u32) -> u32 {
+    1 << (level - 2)
 }
 
 /// The whole grid with 2^level cells for each along each axis.

@@ -147,20 +147,25 @@ fn walk_enter(walk: &mut Walk, grid: &Grid) {
     let bit = inner[0] | (inner[1] << 2) | ((inner[2] & 1) << 4);
     let word = brick.mask[usize::from(inner[2] >= 2)];
     [walk.reference, walk.list_end] = [0, 0];
+    // Leaf cells of the split cell that lie below and above, within an empty one's distance.
+    let mut around = [[0; 3]; 2];
     if (word >> bit) & 1 != 0 {
         let mut range = grid.cells[cell_id(cell.map(|i| i as u32), header.resolution) as usize];
         if range[1] & CELL_SPLIT != 0 {
             let level = range[1] & CELL_LEVEL;
             shift -= level;
-            let leaf = walk.cell.map(|i| (i >> shift) as u32 & ((1 << level) - 1));
+            let last = (1 << level) - 1;
+            let leaf = walk.cell.map(|i| (i >> shift) as u32 & last);
             range = grid.cells[(range[0] + cell_id(leaf, [1 << level; 3])) as usize];
+            let empty = if range[1] == 0 { range[0].saturating_sub(1) } else { 0 };
+            around = [leaf, leaf.map(|i| last - i)].map(|room| room.map(|room| room.min(empty) as i32));
         }
         [walk.reference, walk.list_end] = range;
     }
     let reach = brick.distance as i32;
     (walk.low, walk.high) = if reach == 0 {
         let block = walk.cell.map(|i| i >> shift);
-        (block, block.map(|i| i + 1))
+        (std::array::from_fn(|axis| block[axis] - around[0][axis]), std::array::from_fn(|axis| block[axis] + 1 + around[1][axis]))
     } else {
         let end = header.resolution;
         (at.map(|i| ((i - (reach - 1)) << 2).max(0)), std::array::from_fn(|axis| ((at[axis] + reach) << 2).min(end[axis] as i32)))

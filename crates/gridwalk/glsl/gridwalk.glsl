@@ -78,7 +78,8 @@ const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
 #endif
 
 // [begin, end) in the references; {0, 0} for an empty cell. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
-// level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words.
+// level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words; {d, 0} for an empty one: all leaf
+// cells of the same cell that are closer than d in the maximum norm are empty, and d = 0 says no more than d = 1.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer GridwalkCells { uvec2 range[]; };
 // A triangle is referred to by the index of its first vertex: three times its own.
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint vertex[]; };
@@ -361,20 +362,25 @@ void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader gri
     uint word = inner.z < 2 ? brick.mask.x : brick.mask.y;
     walk.reference = 0u;
     walk.list_end = 0u;
+    // Or the last leaf cell, as the ray goes, of the empty ones around. What is written in a branch costs all walks a blend on a CPU driver.
+    ivec3 ahead = walk.cell;
     if (((word >> bit) & 1u) != 0u) {
         uvec2 range = GridwalkCells(grid.cells).range[gridwalk_cell_id(uvec3(cell), grid.resolution)];
         if ((range.y & GRIDWALK_CELL_SPLIT) != 0u) {
             int level = int(range.y & GRIDWALK_CELL_LEVEL);
             shift -= level;
-            ivec3 leaf = (walk.cell >> shift) & ((1 << level) - 1);
+            int last = (1 << level) - 1;
+            ivec3 leaf = (walk.cell >> shift) & last;
             range = GridwalkCells(grid.cells).range[range.x + uint(leaf.x + ((leaf.y + (leaf.z << level)) << level))];
+            int empty = range.y == 0u ? max(int(range.x) - 1, 0) : 0;
+            ahead += gridwalk_select(walk.up, min(ivec3(empty), ivec3(last) - leaf), -min(ivec3(empty), leaf)) << shift;
         }
         walk.reference = range.x;
         walk.list_end = range.y;
     }
     int reach = int(brick.distance);
     // Of a jump the cells' shift is still the first level's.
-    ivec3 next = (walk.cell >> shift) + walk.one_up;
+    ivec3 next = (ahead >> shift) + walk.one_up;
     ivec3 beyond = (at + gridwalk_select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2;
     walk.edge = (reach != 0 ? min(max(beyond, ivec3(0)), ivec3(grid.resolution)) : next) << shift;
     // As integers: none is below 0 that the maximum does not take.

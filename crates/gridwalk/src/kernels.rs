@@ -273,7 +273,7 @@ pub static LEAF_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::ReadWrite), ("report", Access::ReadWrite)],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "SORT_TILES", 1)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "SORT_TILES", 1), (5, "CELLS_EACH", 1)],
 };
 
 /// Kernel `leaf_count`, from `glsl/map/leaf_count.comp`.
@@ -296,6 +296,18 @@ pub static LEAF_COUNT: Kernel = Kernel {
         ("cells", Access::Write),
     ],
     spec_constants: &[(1, "EXACT", 0)],
+};
+
+/// Kernel `leaf_distance`, from `glsl/cooperative/leaf_distance.comp`.
+pub static LEAF_DISTANCE: Kernel = Kernel {
+    name: "leaf_distance",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/leaf_distance.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [None, None, None],
+    push_constant_size: 24,
+    accesses: &[("state", Access::Read), ("split_cells", Access::Read), ("cells", Access::ReadWrite)],
+    spec_constants: &[(1, "CELLS_EACH", 1)],
 };
 
 /// Kernel `leaf_emit`, from `glsl/map/leaf_emit.comp`.
@@ -598,6 +610,7 @@ pub static ALL: &[&Kernel] = &[
     &GEOMETRY_SCAN,
     &LEAF_ARGS,
     &LEAF_COUNT,
+    &LEAF_DISTANCE,
     &LEAF_EMIT,
     &NEAREST_HITS,
     &OVERLAP_COUNT,
@@ -1101,6 +1114,16 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, cells) == 64);
     assert!(size(|host: &Host| &host.cells) == 8);
     assert!(size_of::<Host>() == 72);
+};
+const _: () = {
+    use crate::push::LeafDistance as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, split_cells) == 8);
+    assert!(size(|host: &Host| &host.split_cells) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 16);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(size_of::<Host>() == 24);
 };
 const _: () = {
     use crate::push::LeafEmit as Host;

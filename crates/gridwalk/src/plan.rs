@@ -546,6 +546,8 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
     plan.barrier(Barrier::Shader);
     let ranges = push::CellRanges { state, keys: keys_b, cells, report };
     plan.step(Step::new(&CELL_RANGES, leaf_argument(offset_of!(Arguments, cell_ranges)), ranges));
+    plan.barrier(Barrier::Shader);
+    plan.step(Step::new(&LEAF_DISTANCE, leaf_argument(offset_of!(Arguments, distance)), push::LeafDistance { state, split_cells, cells }));
 }
 
 /// Times that a trace goes on with walks that ran out of their budget before they are reported: 209,600 triangles a ray in all, or more

@@ -310,6 +310,15 @@ pub(crate) struct LeafEmit {
     pub(crate) cells: u64,
 }
 
+/// Of kernel `leaf_distance`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LeafDistance {
+    pub(crate) state: u64,
+    pub(crate) split_cells: u64,
+    pub(crate) cells: u64,
+}
+
 /// Of kernel `trace_args`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]

@@ -7,6 +7,7 @@ mod clear_cells;
 mod configure;
 mod gather;
 mod largest;
+mod leaf_distance;
 mod overlap;
 mod pair_args;
 mod ray_sort;

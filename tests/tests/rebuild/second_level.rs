@@ -31,14 +31,14 @@ fn crowd(count: u32, seed: u64) -> Mesh {
     mesh
 }
 
-/// The list of a cell of the flat grid, and the box of each leaf cell with its list.
-fn check(built: &Built, flat: &Built, exact: bool) -> Result<[u32; 6], String> {
+/// The list of a cell of the flat grid, and the box of each leaf cell with its list. Cells of each level, and leaf cells that know a distance.
+fn check(built: &Built, flat: &Built, exact: bool) -> Result<([u32; 6], u32), String> {
     let (header, cells, references) = (built.header(), built.cells(), built.references());
     let (flat_cells, flat_references) = (flat.cells(), flat.references());
     let triangles: Vec<[Double; 3]> = built.triangles().iter().map(|v| v.map(|v| [0, 1, 2].map(|i| f64::from(v[i])))).collect();
     let list = |range: [u32; 2]| references.get(range[0] as usize..range[1] as usize).ok_or_else(|| format!("a list at {range:?}"));
     let mut levels = [0; 6];
-    let mut pairs = 0;
+    let (mut pairs, mut measured) = (0, 0);
     for id in 0..header.cell_count {
         let [begin, end] = flat_cells[id as usize];
         let whole = &flat_references[begin as usize..end as usize];
@@ -57,11 +57,23 @@ fn check(built: &Built, flat: &Built, exact: bool) -> Result<[u32; 6], String> {
         }
         let fine = GridHeader { cell_size: header.cell_size.map(|size| size / (1 << level) as f32), ..header };
         let first = cell_of(id, header.resolution).map(|i| i << level);
+        let leaf_range = |local: [u32; 3]| cells[(range[0] + cell_id(local, [1 << level; 3])) as usize];
         for leaf in 0..1 << (3 * level) {
             let local = cell_of(leaf, [1 << level; 3]);
             let (low, high) = cell_box(&fine, std::array::from_fn(|axis| first[axis] + local[axis]));
-            let range = cells[(range[0] + cell_id(local, [1 << level; 3])) as usize];
-            let listed = list(range)?;
+            let range = leaf_range(local);
+            let listed = if range[1] == 0 { &[] } else { list(range)? };
+            let closer = range[0].saturating_sub(1);
+            let [x, y, z] = local.map(|i| i.saturating_sub(closer)..(i + closer + 1).min(1 << level));
+            let full = |local: &[u32; 3]| leaf_range(*local)[1] != 0;
+            let around = || z.flat_map(|z| y.clone().map(move |y| [y, z])).flat_map(|[y, z]| x.clone().map(move |x| [x, y, z]));
+            if range[1] == 0
+                && closer > 0
+                && let Some(wrong) = around().find(full)
+            {
+                return Err(format!("leaf cell {local:?} of cell {id}, of distance {}, but {wrong:?} is not empty", range[0]));
+            }
+            measured += u32::from(range[1] == 0 && closer > 0);
             pairs += listed.len();
             if !listed.windows(2).all(|pair| pair[0] < pair[1]) {
                 return Err(format!("leaf cell {local:?} of cell {id} is not in order: {listed:?}"));
@@ -87,13 +99,13 @@ fn check(built: &Built, flat: &Built, exact: bool) -> Result<[u32; 6], String> {
     if pairs as u32 != report.leaf_pairs || levels[1..].iter().sum::<u32>() > report.split_cells {
         return Err(format!("{pairs} pairs of leaf cells, {levels:?} cells by level, but {report:?}"));
     }
-    Ok(levels)
+    Ok((levels, measured))
 }
 
 #[test]
 fn leaf_cells_list_what_they_meet() {
     let gpu = Gpu::shared();
-    let mut seen = [0; 6];
+    let (mut seen, mut measured) = ([0; 6], 0);
     for (count, resolution, seed) in
         [(3_000, [9, 8, 7], 1), (3_000, [1, 2, 1], 2), (300, [20, 20, 20], 3), (12_000, [3, 3, 3], 4), (1_400, [9, 8, 7], 8)]
     {
@@ -108,12 +120,14 @@ fn leaf_cells_list_what_they_meet() {
                 assert_eq!(built.report.leaves_overflowed(), built.report.leaf_cells > leaf_cells, "{:?}", built.report);
                 assert!(!built.report.pairs_overflowed() && built.report.pairs == flat.report.pairs);
                 let what = format!("seed {seed}, {overlap:?}, {leaf_cells} leaf cells");
-                let levels = check(&built, &flat, overlap == Overlap::Exact).unwrap_or_else(|error| panic!("{what}: {error}"));
+                let (levels, found) = check(&built, &flat, overlap == Overlap::Exact).unwrap_or_else(|error| panic!("{what}: {error}"));
+                measured += found;
                 seen.iter_mut().zip(levels).for_each(|(seen, level)| *seen += level);
             }
         }
     }
     assert!(seen.iter().all(|count| *count > 0), "cells of each level: {seen:?}");
+    assert!(measured > 0);
 }
 
 /// Where the pairs of leaf cells do not fit, the grid is the flat one, and the report says how much would do.

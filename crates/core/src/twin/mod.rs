@@ -22,6 +22,7 @@ pub mod interpolate;
 pub mod interpolate_colours;
 pub mod leaf_args;
 pub mod leaf_count;
+pub mod leaf_distance;
 pub mod morph;
 pub mod motion;
 pub mod nearest_hits;

@@ -15,6 +15,7 @@ use super::gather_records::gather_records;
 use super::geometry_scan::geometry_scan;
 use super::leaf_args::leaf_args;
 use super::leaf_count::{Leaves, leaf_count, leaf_emit};
+use super::leaf_distance::leaf_distance;
 use super::overlap_count::overlap_count;
 use super::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
 use super::pair_args::pair_args;
@@ -306,6 +307,7 @@ impl Memory {
                     }
                 }
             }
+            "leaf_distance" => leaf_distance(shape, groups, &self.leaf_state, &self.split_cells, &mut self.cells),
             "brick_distance_x" => brick_distance_x(shape, groups, resolution, &self.bricks, &mut self.distances_x),
             "brick_distance_y" => brick_distance_y(shape, groups, resolution, &self.distances_x, &mut self.distances_y),
             "brick_distance_z" => brick_distance_z(shape, groups, resolution, &self.distances_y, &mut self.bricks),
