@@ -32,27 +32,34 @@ void main() {
             BrickCells brick = brick_cells(index, resolution);
             uvec2 mask = uvec2(0u);
             uint longest = 0u;
+            uint row_bits = (1u << brick.size.x) - 1u;
             for (uint z = 0u; z < brick.size.z; ++z) {
                 for (uint y = 0u; y < brick.size.y; ++y) {
                     uint row = cell_id(brick.low + uvec3(0u, y, z), resolution);
                     uint bits = 0u;
-                    for (uint x = 0u; x < brick.size.x; ++x) {
-                        uvec2 range = cells.range[row + x];
-                        uint length = range.y - range.x;
+                    for (uint x = 0u; x < BRICK_SIZE; ++x) {
+                        uvec2 range = cells.range[row + min(x, brick.size.x - 1u)];
                         bits |= uint(range.y != 0u) << x;
-                        longest = max(longest, length);
-                        uint level = leaf_level(length, LEAST_SPLIT, most);
-                        if (level != 0u) {
-                            for (uint i = 0u; i < (length >= LEAST_SPLIT_OF_LONG ? 2u : 1u); ++i) {
-                                occupancy.split_cells[i] += 1u;
-                                occupancy.split_references[i] += length;
-                                occupancy.leaf_cells[i] = saturating_add(occupancy.leaf_cells[i], leaf_count_of(level));
-                            }
-                        }
+                        longest = max(longest, range.y - range.x);
                     }
                     uint shift = BRICK_SIZE * y + 16u * (z & 1u);
-                    mask.x |= z < 2u ? bits << shift : 0u;
-                    mask.y |= z < 2u ? 0u : bits << shift;
+                    bits = (bits & row_bits) << shift;
+                    mask.x |= z < 2u ? bits : 0u;
+                    mask.y |= z < 2u ? 0u : bits;
+                }
+            }
+            // Few bricks have such a cell.
+            for (uint cell = 0u; cell < BRICK_SIZE * BRICK_SIZE * BRICK_SIZE && longest >= LEAST_SPLIT; ++cell) {
+                uvec3 local = uvec3(cell, cell >> 2u, cell >> 4u) & (BRICK_SIZE - 1u);
+                if (all(lessThan(local, brick.size))) {
+                    uvec2 range = cells.range[cell_id(brick.low + local, resolution)];
+                    uint length = range.y - range.x;
+                    uint level = leaf_level(length, LEAST_SPLIT, most);
+                    for (uint i = 0u; i < (level == 0u ? 0u : length >= LEAST_SPLIT_OF_LONG ? 2u : 1u); ++i) {
+                        occupancy.split_cells[i] += 1u;
+                        occupancy.split_references[i] += length;
+                        occupancy.leaf_cells[i] = saturating_add(occupancy.leaf_cells[i], leaf_count_of(level));
+                    }
                 }
             }
             occupancy.cells_in_use += uint(bitCount(mask.x) + bitCount(mask.y));

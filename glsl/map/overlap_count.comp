@@ -4,7 +4,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 // Brings a triangle into the grid's frame and counts its cells: of a small box those that it overlaps, a bit of its mask each, of a large
-// one all; that has no bit. The count after the last triangle is zero, so that the scan leaves the total there.
+// one all; that has no bit. A small box is kept with its mask, for the emission. The count after the last triangle is zero, so that the scan leaves the total there.
 
 #include "shared/gather.glsl"
 #include "shared/overlap.glsl"
@@ -18,7 +18,7 @@ layout(push_constant, std430) uniform OverlapCount {
     StateInOut state;
     TriangleWordsInOut triangles;
     UintsOut counts;
-    UintsOut masks;
+    UintsOut boxes; // three words a triangle: mask, first cell, sizes along x and y
 };
 
 void main() {
@@ -34,6 +34,8 @@ void main() {
     uvec4 first = triangles.vertex[3u * triangle];
     uint count = 0u;
     uint mask = 0u;
+    uint low = 0u;
+    uint sizes = 0u;
     if ((first.w & TRIANGLE_DROPPED) == 0u) {
         GridHeader header = grid.header;
         uvec4 second = triangles.vertex[3u * triangle + 1u];
@@ -46,6 +48,8 @@ void main() {
         triangles.vertex[3u * triangle + 2u] = uvec4(floatBitsToUint(v2), third.w);
         CellBox box = triangle_cells(header, v0, v1, v2);
         count = cells_of(box);
+        low = cell_id(box.low, header.resolution);
+        sizes = box_sizes(box);
         if (count > SMALL_BOX) {
             state.state.has_large = 1u;
         } else if (!EXACT || is_row(box)) {
@@ -61,5 +65,7 @@ void main() {
         }
     }
     counts.word[triangle] = count;
-    masks.word[triangle] = mask;
+    boxes.word[3u * triangle] = mask;
+    boxes.word[3u * triangle + 1u] = low;
+    boxes.word[3u * triangle + 2u] = sizes;
 }

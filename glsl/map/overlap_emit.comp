@@ -16,8 +16,8 @@ layout(push_constant, std430) uniform OverlapEmit {
     GridwalkGrid grid;
     StateIn state;
     UintsIn offsets;
-    UintsIn masks;
-    Triangles triangles;
+    UintsIn boxes; // of overlap_count
+    Triangles triangles; // read for large boxes alone
     UintsOut keys_a;
     UintsOut keys_b;
     UintsOut values_a;
@@ -29,25 +29,35 @@ void main() {
     if (triangle >= state.state.triangle_count) {
         return;
     }
-    uint mask = masks.word[triangle];
+    uint mask = boxes.word[3u * triangle];
     if (mask == 0u) {
         return;
     }
-    GridHeader header = grid.header;
+    uint cell = boxes.word[3u * triangle + 1u];
+    uint sizes = boxes.word[3u * triangle + 2u];
+    uvec2 size = uvec2(sizes & 0xFFFFu, sizes >> 16u);
+    uvec3 resolution = grid.header.resolution;
+    // From the last cell of a row to the first of the next, and from the last of a slice.
+    uint to_row = resolution.x - size.x;
+    uint to_slice = resolution.x * (resolution.y - size.y);
     bool to_a = writes_a(state.state.pass_count, 0u);
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
-    CellBox box = triangle_cells(header, triangles.vertex[3u * triangle].xyz, triangles.vertex[3u * triangle + 1u].xyz,
-                                 triangles.vertex[3u * triangle + 2u].xyz);
-    uvec3 cell = box.low;
+    uvec2 local = uvec2(0u);
     uint pair = offsets.word[triangle];
     uint pair_count = state.state.pair_count;
     for (; mask != 0u && pair < pair_count; mask >>= 1u) {
         if ((mask & 1u) != 0u) {
-            keys.word[pair] = cell_id(cell, header.resolution);
+            keys.word[pair] = cell;
             values.word[pair] = 3u * triangle;
             pair += 1u;
         }
-        cell = next_cell(box, cell);
+        local.x += 1u;
+        bool row = local.x == size.x;
+        local.x = row ? 0u : local.x;
+        local.y += uint(row);
+        bool slice = local.y == size.y;
+        local.y = slice ? 0u : local.y;
+        cell += 1u + (row ? to_row : 0u) + (slice ? to_slice : 0u);
     }
 }

@@ -19,7 +19,7 @@ layout(push_constant, std430) uniform OverlapEmitLarge {
     GridwalkGrid grid;
     StateIn state;
     UintsIn offsets;
-    UintsIn masks;
+    UintsIn boxes;
     Triangles triangles;
     UintsOut keys_a;
     UintsOut keys_b;
@@ -59,7 +59,7 @@ void main() {
     for (uint pair = first; pair < last;) {
         uint begin = offsets.word[triangle];
         uint end = min(offsets.word[triangle + 1u], last);
-        if (masks.word[triangle] == 0u) {
+        if (boxes.word[3u * triangle] == 0u) {
             vec3 v0 = triangles.vertex[3u * triangle].xyz;
             vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
             vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;

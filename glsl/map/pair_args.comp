@@ -14,6 +14,7 @@ layout(constant_id = 2) const uint SORT_TILE = 8192;
 layout(constant_id = 3) const uint SCAN_TILE = 4096;
 layout(constant_id = 4) const uint PAIRS_EACH = 16;
 layout(constant_id = 5) const uint SORT_TILES = 1; // tiles a workgroup of the sort
+layout(constant_id = 6) const uint RANGE_PAIRS = 1; // pairs an invocation of cell_ranges
 
 layout(push_constant, std430) uniform PairArgs {
     StateInOut state;
@@ -40,7 +41,7 @@ void main() {
 
     uvec3 runs = split_workgroups((count + PAIRS_EACH - 1u) / PAIRS_EACH, MAP_SIZE);
     arguments.arguments.emit_large = state.state.has_large != 0u ? uvec4(runs, 0u) : uvec4(0u);
-    arguments.arguments.cell_ranges = uvec4(split_workgroups(count, MAP_SIZE), 0u);
+    arguments.arguments.cell_ranges = uvec4(split_workgroups((count + RANGE_PAIRS - 1u) / RANGE_PAIRS, MAP_SIZE), 0u);
     for (uint pass = 0u; pass < pass_capacity; ++pass) {
         bool used = pass < state.state.pass_count && count > 0u;
         arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, SORT_TILES), 0u) : uvec4(0u);

@@ -40,6 +40,9 @@ uint cells_of(CellBox box) {
     return size.x * size.y * size.z;
 }
 
+// Cells along x and y: the lower and the upper half of a word.
+uint box_sizes(CellBox box) { return (box.high.x - box.low.x + 1u) | (box.high.y - box.low.y + 1u) << 16u; }
+
 // The next cell of a box, x fastest.
 uvec3 next_cell(CellBox box, uvec3 cell) {
     cell.x += 1u;

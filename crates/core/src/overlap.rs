@@ -19,6 +19,12 @@ impl CellBox {
         std::array::from_fn(|axis| self.high[axis] - self.low[axis] + 1)
     }
 
+    /// Cells along x and y, as the lower and the upper half of a word.
+    pub fn sizes_word(&self) -> u32 {
+        let [x, y, _] = self.size();
+        x | y << 16
+    }
+
     /// How many cells.
     pub fn count(&self) -> u32 {
         self.size().iter().product()

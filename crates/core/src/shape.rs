@@ -27,6 +27,8 @@ pub struct Shape {
     pub sort_alone: bool,
     /// Pairs an invocation of the emission.
     pub emit_pairs: u32,
+    /// Pairs an invocation of `cell_ranges`.
+    pub range_pairs: u32,
     /// Whether rays load vertices component by component, in the order of their triangle test, not as vectors.
     pub by_component: bool,
 }
@@ -44,6 +46,7 @@ impl Shape {
         sort_keys: 8192,
         sort_alone: true,
         emit_pairs: 64,
+        range_pairs: 16,
         by_component: true,
     };
 
@@ -59,13 +62,14 @@ impl Shape {
         sort_keys: 16,
         sort_alone: false,
         emit_pairs: 16,
+        range_pairs: 1,
         by_component: false,
     };
 
     /// Whether the fields keep to what is said of them: kernels cut otherwise would not fit into shared memory, or give wrong results.
     pub fn is_valid(&self) -> bool {
         let sizes = [self.map_size, self.scan_size, self.sort_size];
-        let items = [self.scan_items, self.reduce_items, self.reduce_bricks, self.sort_keys, self.emit_pairs];
+        let items = [self.scan_items, self.reduce_items, self.reduce_bricks, self.sort_keys, self.emit_pairs, self.range_pairs];
         let digits = |bits: u32| 1_u32 << bits;
         sizes.iter().all(|size| (1..=256).contains(size))
             && items.iter().all(|items| (1..=65_536).contains(items))
@@ -135,6 +139,7 @@ impl Shape {
             "SORT_TILES" => self.sort_tiles(),
             "CELLS_EACH" => self.measured_cells(),
             "PAIRS_EACH" => self.emit_pairs,
+            "RANGE_PAIRS" => self.range_pairs,
             "BY_COMPONENT" => self.by_component.into(),
             _ => return None,
         })
@@ -166,6 +171,7 @@ mod tests {
             Shape { scan_size: 24, ..cpu },
             Shape { scan_items: 0, ..cpu },
             Shape { emit_pairs: 65_537, ..gpu },
+            Shape { range_pairs: 0, ..gpu },
             Shape { sort_bits: 3, ..gpu },
             Shape { sort_bits: 32, ..gpu },
             Shape { sort_bits: 6, ..gpu },

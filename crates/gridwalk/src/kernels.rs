@@ -125,7 +125,7 @@ pub static CELL_RANGES: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 32,
     accesses: &[("state", Access::Read), ("keys", Access::Read), ("cells", Access::Write), ("report", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(1, "RANGE_PAIRS", 1)],
 };
 
 /// Kernel `clear_cells`, from `glsl/map/clear_cells.comp`.
@@ -273,7 +273,14 @@ pub static LEAF_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::ReadWrite), ("report", Access::ReadWrite)],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "SORT_TILES", 1), (5, "CELLS_EACH", 1)],
+    spec_constants: &[
+        (1, "MAP_SIZE", 64),
+        (2, "SORT_TILE", 8192),
+        (3, "SCAN_TILE", 4096),
+        (4, "SORT_TILES", 1),
+        (5, "CELLS_EACH", 1),
+        (6, "RANGE_PAIRS", 1),
+    ],
 };
 
 /// Kernel `leaf_count`, from `glsl/map/leaf_count.comp`.
@@ -370,7 +377,7 @@ pub static OVERLAP_COUNT: Kernel = Kernel {
         ("state", Access::ReadWrite),
         ("triangles", Access::ReadWrite),
         ("counts", Access::Write),
-        ("masks", Access::Write),
+        ("boxes", Access::Write),
     ],
     spec_constants: &[(1, "EXACT", 0)],
 };
@@ -387,7 +394,7 @@ pub static OVERLAP_EMIT: Kernel = Kernel {
         ("grid", Access::Read),
         ("state", Access::Read),
         ("offsets", Access::Read),
-        ("masks", Access::Read),
+        ("boxes", Access::Read),
         ("triangles", Access::Read),
         ("keys_a", Access::Write),
         ("keys_b", Access::Write),
@@ -409,7 +416,7 @@ pub static OVERLAP_EMIT_LARGE: Kernel = Kernel {
         ("grid", Access::Read),
         ("state", Access::Read),
         ("offsets", Access::Read),
-        ("masks", Access::Read),
+        ("boxes", Access::Read),
         ("triangles", Access::Read),
         ("keys_a", Access::Write),
         ("keys_b", Access::Write),
@@ -428,7 +435,14 @@ pub static PAIR_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::Write), ("report", Access::ReadWrite)],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_TILE", 8192), (3, "SCAN_TILE", 4096), (4, "PAIRS_EACH", 16), (5, "SORT_TILES", 1)],
+    spec_constants: &[
+        (1, "MAP_SIZE", 64),
+        (2, "SORT_TILE", 8192),
+        (3, "SCAN_TILE", 4096),
+        (4, "PAIRS_EACH", 16),
+        (5, "SORT_TILES", 1),
+        (6, "RANGE_PAIRS", 1),
+    ],
 };
 
 /// Kernel `ray_keys`, from `glsl/map/ray_keys.comp`.
@@ -1193,8 +1207,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, counts) == 24);
     assert!(size(|host: &Host| &host.counts) == 8);
-    assert!(core::mem::offset_of!(Host, masks) == 32);
-    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, boxes) == 32);
+    assert!(size(|host: &Host| &host.boxes) == 8);
     assert!(size_of::<Host>() == 40);
 };
 const _: () = {
@@ -1205,8 +1219,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, offsets) == 16);
     assert!(size(|host: &Host| &host.offsets) == 8);
-    assert!(core::mem::offset_of!(Host, masks) == 24);
-    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, boxes) == 24);
+    assert!(size(|host: &Host| &host.boxes) == 8);
     assert!(core::mem::offset_of!(Host, triangles) == 32);
     assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, keys_a) == 40);
@@ -1227,8 +1241,8 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, offsets) == 16);
     assert!(size(|host: &Host| &host.offsets) == 8);
-    assert!(core::mem::offset_of!(Host, masks) == 24);
-    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, boxes) == 24);
+    assert!(size(|host: &Host| &host.boxes) == 8);
     assert!(core::mem::offset_of!(Host, triangles) == 32);
     assert!(size(|host: &Host| &host.triangles) == 8);
     assert!(core::mem::offset_of!(Host, keys_a) == 40);

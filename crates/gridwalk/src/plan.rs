@@ -31,7 +31,7 @@ pub enum Buffer {
     SceneBounds,
     BoundsPartials,
     Offsets,
-    CellMasks,
+    CellBoxes,
     ScanPartials,
     KeysA,
     KeysB,
@@ -71,7 +71,7 @@ impl Buffer {
         Buffer::SceneBounds,
         Buffer::BoundsPartials,
         Buffer::Offsets,
-        Buffer::CellMasks,
+        Buffer::CellBoxes,
         Buffer::ScanPartials,
         Buffer::KeysA,
         Buffer::KeysB,
@@ -401,9 +401,9 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
         push::ClearCells { grid, cells: Cells.token() },
     ));
     let exact = if inputs.exact { EXACT } else { 0 };
-    let (offsets, masks, triangles) = (Offsets.token(), CellMasks.token(), Triangles.token());
+    let (offsets, boxes, triangles) = (Offsets.token(), CellBoxes.token(), Triangles.token());
     plan.step(
-        Step::new(&OVERLAP_COUNT, groups.overlap_count, push::OverlapCount { grid, state, triangles, counts: offsets, masks })
+        Step::new(&OVERLAP_COUNT, groups.overlap_count, push::OverlapCount { grid, state, triangles, counts: offsets, boxes })
             .variant(exact),
     );
     plan.barrier(Barrier::Shader);
@@ -423,7 +423,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
     let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), References.token());
-    let emission = push::OverlapEmit { grid, state, offsets, masks, triangles, keys_a, keys_b, values_a, values_b };
+    let emission = push::OverlapEmit { grid, state, offsets, boxes, triangles, keys_a, keys_b, values_a, values_b };
     plan.step(Step::new(&OVERLAP_EMIT, groups.overlap_count, emission));
     // The two write different words, but of the same arrays, and hazards are told by arrays.
     plan.barrier(Barrier::Shader);

@@ -218,7 +218,7 @@ pub(crate) struct OverlapCount {
     pub(crate) state: u64,
     pub(crate) triangles: u64,
     pub(crate) counts: u64,
-    pub(crate) masks: u64,
+    pub(crate) boxes: u64,
 }
 
 /// Of kernel `overlap_emit`.
@@ -228,7 +228,7 @@ pub(crate) struct OverlapEmit {
     pub(crate) grid: u64,
     pub(crate) state: u64,
     pub(crate) offsets: u64,
-    pub(crate) masks: u64,
+    pub(crate) boxes: u64,
     pub(crate) triangles: u64,
     pub(crate) keys_a: u64,
     pub(crate) keys_b: u64,

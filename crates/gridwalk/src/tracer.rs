@@ -560,7 +560,7 @@ impl Tracer {
             Buffer::SceneBounds => in_scratch(scratch.scene_bounds),
             Buffer::BoundsPartials => in_scratch(scratch.bounds_partials),
             Buffer::Offsets => in_scratch(scratch.offsets),
-            Buffer::CellMasks => in_scratch(scratch.cell_masks),
+            Buffer::CellBoxes => in_scratch(scratch.cell_boxes),
             Buffer::ScanPartials => in_scratch(scratch.scan_partials),
             Buffer::KeysA => in_scratch(scratch.keys_a),
             Buffer::KeysB => in_scratch(scratch.keys_b),

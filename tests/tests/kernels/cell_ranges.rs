@@ -22,7 +22,7 @@ fn check(gpu: &Gpu, cell_count: u32, keys: &[u32], what: &str) {
         let cells = gpu.upload("cells", &expected);
         let mut report = Report::zeroed();
         let device_report = gpu.upload("report", &[report]);
-        let groups = split_workgroups(count, shape.map_size);
+        let groups = split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size);
         gpu.launch(&CELL_RANGES, 0, &[&device_state, &sorted, &cells, &device_report], &[], groups);
         cell_ranges(&shape, groups, &state, &all_keys, &mut expected, &mut report);
         assert_same(&format!("{what}: cells"), &cells.read::<[u32; 2]>(0, expected.len()), &expected);
@@ -43,7 +43,7 @@ fn keys(count: u32, cells: u32, seed: u64) -> Vec<u32> {
 fn cell_ranges_of_every_size() {
     for gpu in devices() {
         let shape = gpu.tracer.shape();
-        for size in sizes(shape.map_size) {
+        for size in sizes(shape.map_size * shape.range_pairs) {
             for cells in [1, 2, 100] {
                 let seed = u64::from(size);
                 check(gpu, cells, &keys(size, cells, seed), &format!("{size} pairs, {cells} cells, {shape:?}, seed {seed}"));

@@ -33,6 +33,7 @@ pub const ODD: Shape = Shape {
     sort_keys: 7,
     sort_alone: true,
     emit_pairs: 5,
+    range_pairs: 3,
     by_component: false,
 };
 
@@ -49,6 +50,7 @@ pub const TINY: Shape = Shape {
     sort_keys: 1,
     sort_alone: false,
     emit_pairs: 1,
+    range_pairs: 1,
     by_component: true,
 };
 

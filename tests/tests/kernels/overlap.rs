@@ -20,7 +20,7 @@ use super::{TINY, assert_same, devices, gathered, header, many_groups, sizes, un
 struct Counted {
     triangles: Vec<[f32; 4]>,
     offsets: Vec<u32>,
-    masks: Vec<u32>,
+    boxes: Vec<[u32; 3]>,
     state: BuildState,
 }
 
@@ -34,35 +34,35 @@ fn count(gpu: &Gpu, mesh: &Mesh, header: &GridHeader, exact: bool, what: &str) -
     let device_state = gpu.upload("state", &[state]);
     let moved = gpu.upload("triangles", &triangles);
     let counts = gpu.guarded("counts", 4 * (u64::from(count) + 1));
-    let device_masks = gpu.guarded("masks", 4 * u64::from(count.max(1)));
+    let device_boxes = gpu.guarded("boxes", 12 * u64::from(count.max(1)));
     let groups = split_workgroups(count + 1, shape.map_size);
-    gpu.launch(&OVERLAP_COUNT, exact.into(), &[&grid, &device_state, &moved, &counts, &device_masks], &[], groups);
-    let (mut offsets, mut masks) = (untouched(count as usize + 1), untouched(count.max(1) as usize));
-    overlap_count(&shape, groups, exact, header, &mut state, &mut triangles, &mut offsets, &mut masks);
+    gpu.launch(&OVERLAP_COUNT, exact.into(), &[&grid, &device_state, &moved, &counts, &device_boxes], &[], groups);
+    let (mut offsets, mut boxes) = (untouched(count as usize + 1), vec![[CANARY; 3]; count.max(1) as usize]);
+    overlap_count(&shape, groups, exact, header, &mut state, &mut triangles, &mut offsets, &mut boxes);
     assert_same(&format!("{what}: counts"), &counts.read::<u32>(0, offsets.len()), &offsets);
-    assert_same(&format!("{what}: masks"), &device_masks.read::<u32>(0, masks.len()), &masks);
+    assert_same(&format!("{what}: boxes"), &device_boxes.read::<[u32; 3]>(0, boxes.len()), &boxes);
     assert_same(&format!("{what}: state"), &device_state.read::<BuildState>(0, 1), &[state]);
     let found: Vec<u32> = moved.read(0, 4 * triangles.len());
     assert_same(&format!("{what}: triangles"), &found, bytemuck::cast_slice(&triangles));
     exclusive_scan(&mut offsets, 0);
-    Counted { triangles, offsets, masks, state }
+    Counted { triangles, offsets, boxes, state }
 }
 
 /// Emits on the device and compares, for a capacity of `part` of the pairs.
 fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f64, what: &str) {
     let shape = gpu.tracer.shape();
-    let Counted { triangles, offsets, masks, state } = counted;
+    let Counted { triangles, offsets, boxes, state } = counted;
     let total = offsets[offsets.len() - 1];
     let pair_count = (f64::from(total) * part) as u32;
     let size = 4 * u64::from(pair_count.max(1));
     let pass_count = if exact { 3 } else { 2 };
     let grid = gpu.upload("grid", &[*header]);
     let device_offsets = gpu.upload("offsets", offsets);
-    let device_masks = gpu.upload("masks", masks);
+    let device_boxes = gpu.upload("boxes", boxes);
     let device_triangles = gpu.upload("triangles", triangles);
     let device_state = gpu.upload("state", &[BuildState { pair_count, pass_count, ..*state }]);
     let [a, b, c, d] = ["keys a", "keys b", "values a", "values b"].map(|name| gpu.guarded(name, size));
-    let memory = [&grid, &device_state, &device_offsets, &device_masks, &device_triangles, &a, &b, &c, &d];
+    let memory = [&grid, &device_state, &device_offsets, &device_boxes, &device_triangles, &a, &b, &c, &d];
     let groups = split_workgroups(state.offset_count, shape.map_size);
     let runs = split_workgroups(pair_count.div_ceil(shape.emit_pairs), shape.map_size);
     gpu.launch(&OVERLAP_EMIT, 0, &memory, &[], groups);
@@ -70,7 +70,7 @@ fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f6
     let count = pair_count as usize;
     let (mut keys, mut values) = (untouched(count), untouched(count));
     let (keys_of, values_of) = (&mut keys, &mut values);
-    let mut emission = Emission { grid: header, pair_count, offsets, masks, triangles, keys: keys_of, values: values_of };
+    let mut emission = Emission { grid: header, pair_count, offsets, boxes, triangles, keys: keys_of, values: values_of };
     overlap_emit(&shape, groups, &mut emission);
     overlap_emit_large(&shape, runs, exact, &mut emission);
     let (written, left) = if writes_a(pass_count, 0) { ([&a, &c], [&b, &d]) } else { ([&b, &d], [&a, &c]) };

@@ -46,8 +46,8 @@ impl Size {
         Some(match kernel {
             "gather" => triangles * (INDICES + VERTICES + TRIANGLE),
             "clear_cells" => cells * CELL,
-            "overlap_count" => triangles * (2 * TRIANGLE + 2 * WORD),
-            "overlap_emit" => triangles * (TRIANGLE + 2 * WORD) + pairs * 2 * WORD,
+            "overlap_count" => triangles * (2 * TRIANGLE + 4 * WORD),
+            "overlap_emit" => triangles * 4 * WORD + pairs * 2 * WORD,
             "scan_reduce" => triangles * WORD,
             "scan_downsweep" => triangles * 2 * WORD,
             "sort_histogram" => (written + later * pairs + of_leaves) * WORD,

@@ -32,7 +32,7 @@ pub fn leaf_args(
     }
     report.leaf_pairs = count;
     arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
-    arguments.cell_ranges = four(split_workgroups(count, shape.map_size));
+    arguments.cell_ranges = four(split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
     arguments.distance = if count > 0 { four(split_workgroups(state.split_cells, shape.measured_cells())) } else { [0; 4] };
     for pass in 0..pass_capacity {
         let at = pass as usize;

@@ -2,13 +2,15 @@
 
 use crate::dispatch::workgroups;
 use crate::gather::is_dropped;
+use crate::grid::cell_id;
 use crate::layout::{BuildState, GridHeader};
 use crate::overlap::{SMALL_BOX, SeparatingAxes, triangle_cells};
 use crate::shape::Shape;
 use crate::vector::Vec3;
 
 /// Brings triangles into the grid's frame and counts their cells: of a small box those that it overlaps, a bit of its mask each, of a large
-/// one all; that has no bit. The count after the last triangle is zero.
+/// one all; that has no bit. Of a triangle's three words the mask is the first; of a small box its first cell and [`crate::overlap::CellBox::sizes_word`] are the
+/// others. The count after the last triangle is zero.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn overlap_count(
     shape: &Shape,
@@ -18,7 +20,7 @@ pub fn overlap_count(
     state: &mut BuildState,
     triangles: &mut [[f32; 4]],
     counts: &mut [u32],
-    masks: &mut [u32],
+    boxes: &mut [[u32; 3]],
 ) {
     let triangle_count = state.triangle_count;
     let invocations = workgroups(groups).flat_map(|group| group * shape.map_size..(group + 1) * shape.map_size);
@@ -27,7 +29,7 @@ pub fn overlap_count(
         if triangle == triangle_count {
             continue;
         }
-        masks[triangle as usize] = 0;
+        boxes[triangle as usize] = [0; 3];
         let first = 3 * triangle as usize;
         if is_dropped(triangles[first]) {
             continue;
@@ -40,6 +42,7 @@ pub fn overlap_count(
         });
         let cells = triangle_cells(grid, v);
         let all = cells.count();
+        boxes[triangle as usize] = [0, cell_id(cells.low, grid.resolution), cells.sizes_word()];
         if all > SMALL_BOX {
             state.has_large = 1;
             counts[triangle as usize] = all;
@@ -49,6 +52,6 @@ pub fn overlap_count(
         let meets = |n: &u32| !exact || cells.is_row() || axes.meets(cells.cell(*n));
         let mask = (0..all).filter(meets).fold(0u32, |mask, n| mask | 1 << n);
         counts[triangle as usize] = mask.count_ones();
-        masks[triangle as usize] = mask;
+        boxes[triangle as usize][0] = mask;
     }
 }

@@ -15,8 +15,8 @@ pub struct Emission<'a> {
     pub pair_count: u32,
     /// First pair of each triangle, and the end of the last.
     pub offsets: &'a [u32],
-    /// Cells of each small box that the triangle overlaps, a bit each; 0 for a large box.
-    pub masks: &'a [u32],
+    /// Of each triangle what [`super::overlap_count`] keeps: cells of its small box that it overlaps, a bit each, 0 for a large box; the box.
+    pub boxes: &'a [[u32; 3]],
     /// In the grid's frame.
     pub triangles: &'a [[f32; 4]],
     /// Cell ids.
@@ -39,11 +39,12 @@ impl Emission<'_> {
 pub fn overlap_emit(shape: &Shape, groups: [u32; 3], emission: &mut Emission) {
     let covered = (groups[0] * groups[1] * shape.map_size) as usize;
     for triangle in 0..covered.min(emission.offsets.len() - 1) {
-        let mask = emission.masks[triangle];
-        let (_, cells) = emission.cells(triangle);
+        let [mask, first, sizes] = emission.boxes[triangle];
+        let [x, y] = [sizes & 0xFFFF, sizes >> 16];
         let pairs = emission.offsets[triangle]..emission.pair_count;
         for (pair, n) in pairs.zip((0..u32::BITS).filter(|n| (mask >> n) & 1 != 0)) {
-            emission.keys[pair as usize] = cell_id(cells.cell(n), emission.grid.resolution);
+            let local = [n % x, n / x % y, n / x / y];
+            emission.keys[pair as usize] = first + cell_id(local, emission.grid.resolution);
             emission.values[pair as usize] = 3 * triangle as u32;
         }
     }
@@ -55,7 +56,7 @@ pub fn overlap_emit_large(shape: &Shape, groups: [u32; 3], exact: bool, emission
     let covered = groups[0] * groups[1] * shape.map_size * shape.emit_pairs;
     let last = emission.pair_count.min(covered);
     for (triangle, ends) in emission.offsets.windows(2).enumerate().take_while(|(_, ends)| ends[0] < last) {
-        if emission.masks[triangle] != 0 || ends[0] == ends[1] {
+        if emission.boxes[triangle][0] != 0 || ends[0] == ends[1] {
             continue;
         }
         let (v, cells) = emission.cells(triangle);

@@ -40,7 +40,7 @@ pub fn pair_args(
     report.overflow = state.overflow;
     let runs = four(split_workgroups(count.div_ceil(shape.emit_pairs), shape.map_size));
     arguments.emit_large = if state.has_large != 0 { runs } else { [0; 4] };
-    arguments.cell_ranges = four(split_workgroups(count, shape.map_size));
+    arguments.cell_ranges = four(split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
     for pass in 0..pass_capacity {
         let at = pass as usize;
         [arguments.sort[at], arguments.table_scan[at], arguments.table_spine[at]] = pass_groups(shape, state, pass);

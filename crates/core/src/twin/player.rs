@@ -88,7 +88,7 @@ pub struct Memory {
     pub scene_bounds: Bounds,
     pub bounds_partials: Vec<Bounds>,
     pub offsets: Vec<u32>,
-    pub cell_masks: Vec<u32>,
+    pub cell_boxes: Vec<[u32; 3]>,
     pub scan_partials: Vec<u32>,
     pub keys_a: Vec<u32>,
     pub keys_b: Vec<u32>,
@@ -146,7 +146,7 @@ impl Memory {
             scene_bounds: filled(word),
             bounds_partials: vec![filled(word); shape.bounds_tiles(triangles) as usize],
             offsets: vec![word; offsets],
-            cell_masks: vec![word; triangles.max(1) as usize],
+            cell_boxes: vec![[word; 3]; triangles.max(1) as usize],
             scan_partials: vec![word; offsets.max(table).max(pairs + 1).div_ceil(shape.scan_tile() as usize)],
             keys_a: vec![word; pairs + 1],
             keys_b: vec![word; pairs],
@@ -214,8 +214,8 @@ impl Memory {
             }
             "clear_cells" => clear_cells(shape, groups, cell_count, &mut self.cells),
             "overlap_count" => {
-                let (triangles, counts, masks) = (&mut self.triangles, &mut self.offsets, &mut self.cell_masks);
-                overlap_count(shape, groups, step.exact, &self.header, &mut self.state, triangles, counts, masks);
+                let (triangles, counts, boxes) = (&mut self.triangles, &mut self.offsets, &mut self.cell_boxes);
+                overlap_count(shape, groups, step.exact, &self.header, &mut self.state, triangles, counts, boxes);
             }
             "scan_reduce" | "scan_spine" | "scan_downsweep" => {
                 let state = level_state(step.level, &mut self.state, &mut self.leaf_state);
@@ -246,8 +246,8 @@ impl Memory {
                     false => (&mut self.keys_b, &mut self.references),
                 };
                 let offsets = &self.offsets[..self.state.offset_count as usize];
-                let (grid, masks, triangles) = (&self.header, &self.cell_masks, &self.triangles);
-                let mut emission = Emission { grid, pair_count, offsets, masks, triangles, keys, values };
+                let (grid, boxes, triangles) = (&self.header, &self.cell_boxes, &self.triangles);
+                let mut emission = Emission { grid, pair_count, offsets, boxes, triangles, keys, values };
                 match step.kernel {
                     "overlap_emit" => overlap_emit(shape, groups, &mut emission),
                     _ => overlap_emit_large(shape, groups, step.exact, &mut emission),
