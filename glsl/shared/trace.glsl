@@ -131,11 +131,16 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
             }
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
+        References references = References(grid.references);
+        uint ahead = walk.reference < stop ? references.vertex[walk.reference] : 0u;
         while (walk.reference < stop) {
             if (COUNT) {
                 counters.tests += 1u;
             }
-            uint vertex = walk_take(walk, grid);
+            // The next reference is on its way while this triangle is tested.
+            uint vertex = ahead;
+            walk.reference += 1u;
+            ahead = references.vertex[min(walk.reference, stop - 1u)];
             Corners corners;
             if (BY_COMPONENT) {
                 corners = load_corners(components, vertex);
