@@ -34,6 +34,12 @@ const uint OPTION_MASKS = 4u; // each ray has a mask of its own
 const uint OPTION_GEOMETRIES = 8u; // geometry and number within it are written
 const uint OPTION_ORDER = 16u; // rays are traced in the order that is given
 
+#ifdef TRACE_ANY
+const bool LOADS_AHEAD = false; // rays to a light gain nothing
+#else
+const bool LOADS_AHEAD = BY_COMPONENT; // of the next triangle a component is loaded while one is tested, and with it the line of the cache
+#endif
+
 // A turn walks through empty cells to the next list, then tests triangles of it: so the invocations of a subgroup mostly do the same.
 // lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over all of its loops and over the divergent paths of
 // its subgroup: TURNS * (1 + STEPS_EACH_TURN + TESTS_EACH_TURN) = 32,750 stays below.
@@ -108,8 +114,10 @@ Components components_of(MovedRay ray, GridHeader grid) {
     return Components(address_plus(grid.triangles, x), address_plus(grid.triangles, y), address_plus(grid.triangles, z), permute(ray, ray.origin));
 }
 
-Corners load_corners(Components of, uint vertex) {
-    vec3 a = vec3(FirstVertices(of.x).component[vertex].x, FirstVertices(of.y).component[vertex].x, FirstVertices(of.z).component[vertex].x);
+float load_first_x(Components of, uint vertex) { return FirstVertices(of.x).component[vertex].x; }
+
+Corners load_corners(Components of, uint vertex, float first_x) {
+    vec3 a = vec3(first_x, FirstVertices(of.y).component[vertex].x, FirstVertices(of.z).component[vertex].x);
     vec3 b = vec3(SecondVertices(of.x).component[vertex].x, SecondVertices(of.y).component[vertex].x, SecondVertices(of.z).component[vertex].x);
     vec3 c = vec3(ThirdVertices(of.x).component[vertex].x, ThirdVertices(of.y).component[vertex].x, ThirdVertices(of.z).component[vertex].x);
     return Corners(a - of.origin, b - of.origin, c - of.origin);
@@ -132,18 +140,37 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         References references = References(grid.references);
-        uint ahead = walk.reference < stop ? references.vertex[walk.reference] : 0u;
+        uint ahead = 0u;
+        uint after = 0u;
+        float ahead_x = 0.0;
+        if (walk.reference < stop) {
+            ahead = references.vertex[walk.reference];
+            if (LOADS_AHEAD) {
+                ahead_x = load_first_x(components, ahead);
+                after = references.vertex[min(walk.reference + 1u, stop - 1u)];
+            }
+        }
         while (walk.reference < stop) {
             if (COUNT) {
                 counters.tests += 1u;
             }
-            // The next reference is on its way while this triangle is tested.
+            // What the next test begins with is on its way during this one.
             uint vertex = ahead;
+            float first_x = ahead_x;
             walk.reference += 1u;
-            ahead = references.vertex[min(walk.reference, stop - 1u)];
+            if (LOADS_AHEAD) {
+                ahead = after;
+                ahead_x = load_first_x(components, ahead);
+                after = references.vertex[min(walk.reference + 1u, stop - 1u)];
+            } else {
+                ahead = references.vertex[min(walk.reference, stop - 1u)];
+            }
             Corners corners;
             if (BY_COMPONENT) {
-                corners = load_corners(components, vertex);
+                if (!LOADS_AHEAD) {
+                    first_x = load_first_x(components, vertex);
+                }
+                corners = load_corners(components, vertex, first_x);
             } else {
                 corners = walk_corners(walk, grid, vertex);
             }
