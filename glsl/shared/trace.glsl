@@ -34,10 +34,11 @@ const uint OPTION_MASKS = 4u; // each ray has a mask of its own
 const uint OPTION_GEOMETRIES = 8u; // geometry and number within it are written
 const uint OPTION_ORDER = 16u; // rays are traced in the order that is given
 
+// Whether of the next triangle a component is loaded while one is tested, and the line of the cache with it. Rays to a light gain nothing.
 #ifdef TRACE_ANY
-const bool LOADS_AHEAD = false; // rays to a light gain nothing
+#define LOADS_AHEAD false
 #else
-const bool LOADS_AHEAD = BY_COMPONENT; // of the next triangle a component is loaded while one is tested, and with it the line of the cache
+#define LOADS_AHEAD BY_COMPONENT
 #endif
 
 // A turn walks through empty cells to the next list, then tests triangles of it: so the invocations of a subgroup mostly do the same.

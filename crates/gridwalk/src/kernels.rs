@@ -171,7 +171,7 @@ pub static CLOSEST_HIT: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "LOADS_AHEAD", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
 };
 
 /// Kernel `configure`, from `glsl/map/configure.comp`.
@@ -213,7 +213,7 @@ pub static COUNT_HITS: Kernel = Kernel {
         ("masks", Access::Read),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "LOADS_AHEAD", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
 };
 
 /// Kernel `gather`, from `glsl/cooperative/gather.comp`.
@@ -361,7 +361,7 @@ pub static NEAREST_HITS: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "LOADS_AHEAD", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
 };
 
 /// Kernel `overlap_count`, from `glsl/map/overlap_count.comp`.

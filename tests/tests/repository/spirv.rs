@@ -171,3 +171,18 @@ fn the_validator_accepts_every_module() {
     fs::write(broken.path(), words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<_>>()).unwrap();
     assert!(!validate(broken.path()).status.success(), "the validator accepts a broken module");
 }
+
+/// A specialization constant that nobody sets keeps its default without a word, as one does whose name was changed in the shader.
+#[test]
+fn every_specialization_constant_is_set() {
+    let of_launches = ["CONTINUE", "LAST", "RESUME", "COUNT", "EXTRAS", "EXACT"];
+    let is_set = |name: &str| of_launches.contains(&name) || gridwalk::Shape::CPU.constant(name).is_some();
+    let mut seen = 0;
+    for kernel in gridwalk::kernels::ALL {
+        for (_, name, _) in kernel.spec_constants {
+            assert!(is_set(name), "{}: nobody sets {name}", kernel.name);
+            seen += 1;
+        }
+    }
+    assert!(seen > 0 && !is_set("LOADS_AHEAD"));
+}
