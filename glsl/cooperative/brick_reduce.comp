@@ -49,7 +49,8 @@ void main() {
                 }
             }
             // Few bricks have such a cell.
-            for (uint cell = 0u; cell < BRICK_SIZE * BRICK_SIZE * BRICK_SIZE && longest >= LEAST_SPLIT; ++cell) {
+            bool splits = most != 0u && longest >= LEAST_SPLIT;
+            for (uint cell = 0u; cell < BRICK_SIZE * BRICK_SIZE * BRICK_SIZE && splits; ++cell) {
                 uvec3 local = uvec3(cell, cell >> 2u, cell >> 4u) & (BRICK_SIZE - 1u);
                 if (all(lessThan(local, brick.size))) {
                     uvec2 range = cells.range[cell_id(brick.low + local, resolution)];

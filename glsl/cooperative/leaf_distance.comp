@@ -4,7 +4,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 // The distance of each empty leaf cell to the nearest that is not empty, in the maximum norm, among those of the same split cell: into the
-// first word of its range, where it is more than one. A workgroup takes CELLS_EACH split cells, one after another, of which few have so many
+// first word of its range, where it is more than one. A workgroup takes SPLIT_CELLS_EACH split cells, one after another, of which few have so many
 // leaf cells that this is worth it. A row of leaf cells along x is a word of bits, which spread by one cell along each axis in a turn.
 
 #include "shared/build.glsl"
@@ -12,7 +12,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(constant_id = 1) const uint CELLS_EACH = 1;
+layout(constant_id = 1) const uint SPLIT_CELLS_EACH = 1;
 
 layout(push_constant, std430) uniform LeafDistance {
     StateIn state; // of the second level
@@ -35,8 +35,8 @@ void write_distances(uint first, uint bits, uint reached) {
 
 void main() {
     uint lane = gl_LocalInvocationID.x;
-    for (uint i = 0u; i < CELLS_EACH; ++i) {
-        uint record = workgroup_index() * CELLS_EACH + i;
+    for (uint i = 0u; i < SPLIT_CELLS_EACH; ++i) {
+        uint record = workgroup_index() * SPLIT_CELLS_EACH + i;
         uint level = record < state.state.split_cells ? split_cells.cell[record].level : 0u;
         if (level < LEAST_MEASURED) {
             continue;

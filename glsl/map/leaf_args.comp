@@ -13,7 +13,7 @@ layout(constant_id = 1) const uint MAP_SIZE = 64;
 layout(constant_id = 2) const uint SORT_TILE = 8192;
 layout(constant_id = 3) const uint SCAN_TILE = 4096;
 layout(constant_id = 4) const uint SORT_TILES = 1; // tiles a workgroup of the sort
-layout(constant_id = 5) const uint CELLS_EACH = 1; // split cells a workgroup of leaf_distance
+layout(constant_id = 5) const uint SPLIT_CELLS_EACH = 1; // split cells a workgroup of leaf_distance
 layout(constant_id = 6) const uint RANGE_PAIRS = 1; // pairs an invocation of cell_ranges
 
 layout(push_constant, std430) uniform LeafArgs {
@@ -47,7 +47,7 @@ void main() {
 
     arguments.arguments.emit = count > 0u ? arguments.arguments.count : uvec4(0u);
     arguments.arguments.cell_ranges = uvec4(split_workgroups((count + RANGE_PAIRS - 1u) / RANGE_PAIRS, MAP_SIZE), 0u);
-    arguments.arguments.distance = count > 0u ? uvec4(split_workgroups(state.state.split_cells, CELLS_EACH), 0u) : uvec4(0u);
+    arguments.arguments.distance = count > 0u ? uvec4(split_workgroups(state.state.split_cells, SPLIT_CELLS_EACH), 0u) : uvec4(0u);
     for (uint pass = 0u; pass < pass_capacity; ++pass) {
         bool used = pass < state.state.pass_count && count > 0u;
         arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, SORT_TILES), 0u) : uvec4(0u);

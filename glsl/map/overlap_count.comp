@@ -4,7 +4,8 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 // Brings a triangle into the grid's frame and counts its cells: of a small box those that it overlaps, a bit of its mask each, of a large
-// one all; that has no bit. A small box is kept with its mask, for the emission. The count after the last triangle is zero, so that the scan leaves the total there.
+// one all; that has no bit. A small box is kept with its mask, for the emission. The count after the last triangle is zero, so that the scan
+// leaves the total there.
 
 #include "shared/gather.glsl"
 #include "shared/overlap.glsl"

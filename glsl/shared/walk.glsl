@@ -1,6 +1,6 @@
 // The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), in the moved frame, with jumps
-// across empty space: a step leaves a block of cells, which is one cell, or one leaf cell of a split cell, where its brick holds triangles, and else all bricks around that
-// are known to be empty.
+// across empty space: a step leaves a block of cells. Where a brick holds triangles that is one cell, or of a split cell one leaf cell with all
+// those around that are known to be empty if it is; elsewhere it is all bricks around that are known to be empty.
 //
 // Positions are counted in fine cells: the first level's cells are blocks of 2^fine_shift of them along each axis, the leaf cells of a split
 // cell (Kalojanov, Billeter and Slusallek 2011) smaller blocks.

@@ -30,3 +30,26 @@ pub fn cell_id(cell: [u32; 3], resolution: [u32; 3]) -> u32 {
 pub fn cell_of(id: u32, resolution: [u32; 3]) -> [u32; 3] {
     [id % resolution[0], id / resolution[0] % resolution[1], id / resolution[0] / resolution[1]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::whole_below;
+
+    #[test]
+    fn whole_numbers_below() {
+        let cases = [
+            (0.5, 0),
+            (0.999_999_94, 0),
+            (1.0, 0),
+            (1.000_000_1, 1),
+            (2.0, 2),
+            (2.999_999_8, 2),
+            (3.0, 2),
+            (3.000_000_2, 3),
+            (8_388_607.5, 8_388_607),
+        ];
+        for (x, expected) in cases {
+            assert_eq!(whole_below(x), expected, "{x}");
+        }
+    }
+}

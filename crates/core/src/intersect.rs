@@ -154,7 +154,7 @@ pub fn intersect_triangle(ray: &MovedRay, vertices: [Vec3; 3]) -> Option<Interse
     let negative = bits.iter().any(|bits| *bits > 0x8000_0000);
     let positive = bits.iter().any(|bits| *bits as i32 > 0);
     let determinant = edge_u + edge_v + edge_w;
-    if (negative && positive) || determinant.abs() < f32::MIN_POSITIVE {
+    if (negative && positive) || determinant.is_nan() || determinant.abs() < f32::MIN_POSITIVE {
         return None;
     }
     // The distance is the plane's, not the edge functions': theirs is lost to cancellation where the triangle is long and thin. It is exact
@@ -163,7 +163,7 @@ pub fn intersect_triangle(ray: &MovedRay, vertices: [Vec3; 3]) -> Option<Interse
     let e2 = sub(c, a);
     let normal = [e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]];
     let facing = normal[0] * ray.shear[0] + normal[1] * ray.shear[1] + normal[2];
-    if facing.abs() < f32::MIN_POSITIVE {
+    if facing.is_nan() || facing.abs() < f32::MIN_POSITIVE {
         return None;
     }
     let along = (normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2]) / facing;

@@ -55,9 +55,9 @@ pub struct GridHeader {
     pub resolution: [u32; 3],
     /// Triangles of the build, dropped ones included.
     pub triangle_count: u32,
-    /// Device address of the cell ranges (low word first).
+    /// Device address of the cell ranges (low word first): begin and end of a list; of an empty leaf cell, how far others are, and 0.
     pub cells: [u32; 2],
-    /// Device address of the references.
+    /// Device address of the references, each the index of a triangle's first vertex.
     pub references: [u32; 2],
     /// Device address of the triangles.
     pub triangles: [u32; 2],

@@ -10,7 +10,7 @@ pub struct Shape {
     pub map_size: u32,
     /// Invocations a workgroup of the reductions and the scan; a power of two.
     pub scan_size: u32,
-    /// Elements an invocation of the scan; no number of elements an invocation is above 65,536.
+    /// Elements an invocation of the scan; no number of elements an invocation is above 32,767.
     pub scan_items: u32,
     /// Triangles an invocation of the gathering, which reduces the scene box.
     pub reduce_items: u32,
@@ -72,7 +72,7 @@ impl Shape {
         let items = [self.scan_items, self.reduce_items, self.reduce_bricks, self.sort_keys, self.emit_pairs, self.range_pairs];
         let digits = |bits: u32| 1_u32 << bits;
         sizes.iter().all(|size| (1..=256).contains(size))
-            && items.iter().all(|items| (1..=65_536).contains(items))
+            && items.iter().all(|items| (1..=32_767).contains(items))
             && self.scan_size.is_power_of_two()
             // Fewer bits need more passes than a plan records.
             && (4..=12).contains(&self.sort_bits)
@@ -96,9 +96,9 @@ impl Shape {
         self.scan_size * self.reduce_bricks
     }
 
-    /// Split cells a workgroup of `leaf_distance`, whose loops stay within their budget.
+    /// Split cells a workgroup of `leaf_distance`: four, of which each takes 4,400 turns at most, stay within the budget of its loops.
     pub const fn measured_cells(&self) -> u32 {
-        if self.reduce_bricks < 8 { self.reduce_bricks } else { 8 }
+        if self.reduce_bricks < 4 { self.reduce_bricks } else { 4 }
     }
 
     /// Keys a tile of the sort.
@@ -137,7 +137,7 @@ impl Shape {
             "SORT_ALONE" => self.sort_alone.into(),
             "SORT_TILE" => self.sort_tile(),
             "SORT_TILES" => self.sort_tiles(),
-            "CELLS_EACH" => self.measured_cells(),
+            "SPLIT_CELLS_EACH" => self.measured_cells(),
             "PAIRS_EACH" => self.emit_pairs,
             "RANGE_PAIRS" => self.range_pairs,
             "BY_COMPONENT" => self.by_component.into(),
@@ -170,7 +170,8 @@ mod tests {
             Shape { map_size: 257, ..cpu },
             Shape { scan_size: 24, ..cpu },
             Shape { scan_items: 0, ..cpu },
-            Shape { emit_pairs: 65_537, ..gpu },
+            Shape { emit_pairs: 32_768, ..gpu },
+            Shape { range_pairs: 32_768, ..cpu },
             Shape { range_pairs: 0, ..gpu },
             Shape { sort_bits: 3, ..gpu },
             Shape { sort_bits: 32, ..gpu },

@@ -278,7 +278,7 @@ pub static LEAF_ARGS: Kernel = Kernel {
         (2, "SORT_TILE", 8192),
         (3, "SCAN_TILE", 4096),
         (4, "SORT_TILES", 1),
-        (5, "CELLS_EACH", 1),
+        (5, "SPLIT_CELLS_EACH", 1),
         (6, "RANGE_PAIRS", 1),
     ],
 };
@@ -314,7 +314,7 @@ pub static LEAF_DISTANCE: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 24,
     accesses: &[("state", Access::Read), ("split_cells", Access::Read), ("cells", Access::ReadWrite)],
-    spec_constants: &[(1, "CELLS_EACH", 1)],
+    spec_constants: &[(1, "SPLIT_CELLS_EACH", 1)],
 };
 
 /// Kernel `leaf_emit`, from `glsl/map/leaf_emit.comp`.

@@ -163,9 +163,11 @@ pub struct BuildInfo {
     pub options: BuildOptions,
     /// Whether cells with far more triangles than others are split, if the capacity has leaf cells. Otherwise the steps of the second level are
     /// not recorded, whose launches take time even where no cell is to be split; the grid is complete and flat, and the report counts the cells
-    /// and leaf cells that there would be, so that a scene that moves can have the second level once it needs it.
+    /// and leaf cells that there would be, so that a scene that moves can have the second level once it needs it. Steps and timestamps are then
+    /// those of a capacity without leaf cells.
     pub second_level: bool,
-    /// Times of the steps, if wanted: [`BuildSizes::timestamp_count`] queries.
+    /// Times of the steps, if wanted: [`BuildSizes::timestamp_count`] queries, of which a build resets and writes one more than it has steps;
+    /// without `second_level` it has fewer, and waiting for the others never ends.
     pub timestamps: Option<Timestamps>,
 }
 

@@ -175,10 +175,10 @@ fn the_validator_accepts_every_module() {
 /// A specialization constant that nobody sets keeps its default without a word, as one does whose name was changed in the shader.
 #[test]
 fn every_specialization_constant_is_set() {
-    let of_launches = ["CONTINUE", "LAST", "RESUME", "COUNT", "EXTRAS", "EXACT"];
+    let of_launches = ["CONTINUE", "LAST", "RESUME", "COUNT", "EXTRAS", "EXACT", "BLEND"];
     let is_set = |name: &str| of_launches.contains(&name) || gridwalk::Shape::CPU.constant(name).is_some();
     let mut seen = 0;
-    for kernel in gridwalk::kernels::ALL {
+    for kernel in gridwalk::kernels::ALL.iter().chain(gridwalk_render::kernels::ALL) {
         for (_, name, _) in kernel.spec_constants {
             assert!(is_set(name), "{}: nobody sets {name}", kernel.name);
             seen += 1;

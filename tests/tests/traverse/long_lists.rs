@@ -2,7 +2,7 @@
 
 use gridwalk::{BuildOptions, Capacity, Hit, Ray};
 use gridwalk_core::UNFINISHED;
-use gridwalk_tests::gpu::{Built, Gpu, Mesh};
+use gridwalk_tests::gpu::{Built, Gpu, Mesh, TraceOptions};
 
 use super::rays::ray;
 use super::{build, twins};
@@ -122,6 +122,34 @@ fn walks_go_on_in_leaf_cells() {
     let nearest = super::all_hits::nearest::<2>(gpu, &built, &rays, 1);
     assert_eq!(nearest[0][0].map(|hit| hit.triangle), [count, 1]);
     assert_eq!(nearest[0][1].map(|hit| hit.triangle), [1, 2]);
+}
+
+/// Rays cross the empty part of a cell with 32^3 leaf cells in jumps, in every direction, by as many steps as the twin.
+#[test]
+fn empty_leaf_cells_are_jumped_across() {
+    let gpu = Gpu::shared();
+    let corners = [[[-1.0, -1.0, -1.0], [-0.9, -1.0, -1.0], [-1.0, -0.9, -1.0]], [[1.0, 1.0, 1.0], [0.9, 1.0, 1.0], [1.0, 0.9, 1.0]]];
+    let crowd = (0..2_000).map(|_| [[-0.95, -0.95, -0.95], [-0.949, -0.95, -0.95], [-0.95, -0.949, -0.95]]);
+    let mesh = Mesh::from_triangles(&corners.into_iter().chain(crowd).collect::<Vec<_>>());
+    let options = BuildOptions { resolution: Some([1, 1, 1]), ..BuildOptions::default() };
+    let built = gpu.build(&mesh, Capacity { triangles: 2_002, cells: 64, pairs: 1 << 16, leaf_cells: 1 << 15 }, options);
+    assert_eq!((built.report.split_cells, built.report.leaf_cells), (1, 1 << 15), "{:?}", built.report);
+    let turned = |v: [f32; 3], axis: usize| std::array::from_fn(|i| v[(i + axis) % 3]);
+    let ways = [[0.0, 0.0, 1.0], [0.02, -0.01, 1.0], [-0.3, 0.2, 1.0]];
+    let rays: Vec<_> = (0..3)
+        .flat_map(|axis| ways.map(|way| (turned(way, axis), turned([0.1, 0.2, 0.0], axis))))
+        .flat_map(|(way, middle)| [(way, middle), (way.map(|x: f32| -x), middle)])
+        .map(|(way, middle): ([f32; 3], [f32; 3])| ray(std::array::from_fn(|i| middle[i] - 2.0 * way[i]), way))
+        .collect();
+    let (hits, counters) = gpu.closest_with(&built, &rays, &TraceOptions { count: true, ..TraceOptions::default() });
+    let copy = built.copy();
+    for ((ray, hit), counted) in rays.iter().zip(&hits).zip(&counters) {
+        let twin = twins::closest(&copy.view(), ray, None, &mut ());
+        assert_eq!((hit.triangle, twin.hit.triangle), (Hit::MISS.triangle, Hit::MISS.triangle), "{ray:?}");
+        assert!(!gpu.context.is_cpu() || counted[0] == twin.counters.steps, "{ray:?}: {counted:?}, twin {:?}", twin.counters);
+        // One by one there would be 32 at least.
+        assert!(counted[0] <= 12, "{ray:?} takes {} steps", counted[0]);
+    }
 }
 
 #[test]

@@ -67,7 +67,10 @@ fn the_kernels_agree_with_their_twins() {
             // So far away that rounding moves a ray by more than the box: where it lands does not matter, but all land there.
             let far =
                 |ray: &Ray| Ray { origin: rays::sub(ray.origin, rays::scaled(ray.direction, 1e9 * rays::extent(&model.mesh))), ..*ray };
-            rays.extend(rays.clone().iter().step_by(20).map(far));
+            // So far that products overflow: none is hit.
+            let lost =
+                |ray: &Ray| Ray { origin: rays::sub(ray.origin, rays::scaled(ray.direction, 1e30 * rays::extent(&model.mesh))), ..*ray };
+            rays.extend(rays.clone().iter().step_by(20).flat_map(|ray| [far(ray), lost(ray)]));
             for (index, ray) in rays.iter_mut().enumerate() {
                 match index % 8 {
                     0 => ray.t_max = 1.0,

@@ -9,8 +9,8 @@ use crate::shape::Shape;
 use crate::vector::Vec3;
 
 /// Brings triangles into the grid's frame and counts their cells: of a small box those that it overlaps, a bit of its mask each, of a large
-/// one all; that has no bit. Of a triangle's three words the mask is the first; of a small box its first cell and [`crate::overlap::CellBox::sizes_word`] are the
-/// others. The count after the last triangle is zero.
+/// one all; that has no bit. Of a triangle's three words the mask is the first; of a small box its first cell and
+/// [`crate::overlap::CellBox::sizes_word`] are the others. The count after the last triangle is zero.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn overlap_count(
     shape: &Shape,
