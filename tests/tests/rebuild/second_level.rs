@@ -31,6 +31,13 @@ fn crowd(count: u32, seed: u64) -> Mesh {
     mesh
 }
 
+/// Such a scene in a grid of few cells, with room for all leaf cells.
+fn crowded(seed: u64) -> (Mesh, BuildOptions, Capacity) {
+    let options = BuildOptions { resolution: Some([9, 8, 7]), ..BuildOptions::default() };
+    let room = Capacity { triangles: 10_000, cells: 10_000, pairs: 1 << 20, leaf_cells: 1 << 18 };
+    (crowd(3_000, seed), options, room)
+}
+
 /// The list of a cell of the flat grid, and the box of each leaf cell with its list. Cells of each level, and leaf cells that know a distance.
 fn check(built: &Built, flat: &Built, exact: bool) -> Result<([u32; 6], u32), String> {
     let (header, cells, references) = (built.header(), built.cells(), built.references());
@@ -134,9 +141,7 @@ fn leaf_cells_list_what_they_meet() {
 #[test]
 fn without_room_for_pairs_no_cell_is_split() {
     let gpu = Gpu::shared();
-    let mesh = crowd(3_000, 5);
-    let options = BuildOptions { resolution: Some([9, 8, 7]), ..BuildOptions::default() };
-    let room = Capacity { triangles: 10_000, cells: 10_000, pairs: 1 << 20, leaf_cells: 1 << 18 };
+    let (mesh, options, room) = crowded(5);
     let whole = gpu.build(&mesh, room, options);
     let flat = gpu.build(&mesh, Capacity { leaf_cells: 0, ..room }, options);
     let needed = whole.report.pairs + whole.report.leaf_pairs;
@@ -156,9 +161,7 @@ fn without_room_for_pairs_no_cell_is_split() {
 #[test]
 fn a_second_level_that_is_left_out_is_counted() {
     let gpu = Gpu::shared();
-    let mesh = crowd(3_000, 9);
-    let options = BuildOptions { resolution: Some([9, 8, 7]), ..BuildOptions::default() };
-    let room = Capacity { triangles: 10_000, cells: 10_000, pairs: 1 << 20, leaf_cells: 1 << 18 };
+    let (mesh, options, room) = crowded(9);
     let whole = gpu.build(&mesh, room, options);
     let flat = gpu.build(&mesh, Capacity { leaf_cells: 0, ..room }, options);
     let rays = random_rays(&mesh, 2_000, 9);
@@ -204,9 +207,7 @@ fn lists_that_are_long_all_over_stay_whole() {
 #[test]
 fn broken_leaf_cells_are_noticed() {
     let gpu = Gpu::shared();
-    let mesh = crowd(3_000, 7);
-    let options = BuildOptions { resolution: Some([9, 8, 7]), ..BuildOptions::default() };
-    let room = Capacity { triangles: 10_000, cells: 10_000, pairs: 1 << 20, leaf_cells: 1 << 18 };
+    let (mesh, options, room) = crowded(7);
     let flat = gpu.build(&mesh, Capacity { leaf_cells: 0, ..room }, options);
     let built = gpu.build(&mesh, room, options);
     check(&built, &flat, true).unwrap();
