@@ -13,6 +13,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer B
 
 layout(push_constant, std430) uniform BrickReduce {
     GridwalkGrid grid;
+    UintsIn used;
     Cells cells;
     BricksOut bricks;
     OccupancyOut partials;
@@ -33,7 +34,8 @@ void main() {
             uvec2 mask = uvec2(0u);
             uint longest = 0u;
             uint row_bits = (1u << brick.size.x) - 1u;
-            for (uint z = 0u; z < brick.size.z; ++z) {
+            uint depth = used.word[index] != 0u ? brick.size.z : 0u;
+            for (uint z = 0u; z < depth; ++z) {
                 for (uint y = 0u; y < brick.size.y; ++y) {
                     uint row = cell_id(brick.low + uvec3(0u, y, z), resolution);
                     uint bits = 0u;

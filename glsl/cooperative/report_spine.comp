@@ -62,7 +62,7 @@ void main() {
         uint key_bits = leaf_cells <= 1u ? 0u : uint(findMSB(leaf_cells - 1u)) + 1u;
         uint pass_count = (key_bits + SORT_BITS - 1u) / SORT_BITS;
         uint digit_bits = pass_count == 0u ? 0u : (key_bits + pass_count - 1u) / pass_count;
-        leaf_state.state = BuildState(0u, split_references + 1u, 0u, 0u, key_bits, pass_count, 0u, 0u, 0u, digit_bits, 0u, 0u, SATURATED,
+        leaf_state.state = BuildState(0u, split_references + 1u, 0u, 0u, key_bits, pass_count, 0u, 0u, digit_bits, 0u, 0u, SATURATED,
                                       state.state.kept_count, grid.header.cell_count, split_cells,
                                       long_lists ? LEAST_SPLIT_OF_LONG : LEAST_SPLIT);
         bool any_split = split_cells != 0u;
@@ -70,6 +70,7 @@ void main() {
         arguments.arguments.split_cells = any_split ? uvec4(split_workgroups(count, 1u), 0u) : uvec4(0u);
         arguments.arguments.count = any_split ? uvec4(split_workgroups(counts, MAP_SIZE), 0u) : uvec4(0u);
         arguments.arguments.offsets_scan = any_split ? uvec4(split_workgroups(counts, SCAN_TILE), 0u) : uvec4(0u);
-        arguments.arguments.offsets_spine = any_split ? uvec4(1u, 1u, 1u, 0u) : uvec4(0u);
+        // Without a split cell once, to leave out the steps that follow.
+        arguments.arguments.args = any_split ? uvec4(split_workgroups(counts, SCAN_TILE), 0u) : uvec4(1u, 1u, 1u, 0u);
     }
 }

@@ -3,7 +3,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// The saturating sum of a tile: first step of the exclusive scan (reduce, spine, downsweep).
+// The saturating sum of a tile of counts: the first step of their exclusive scan. The second is pair_args's, or leaf_args's.
 
 #include "shared/scan.glsl"
 
@@ -13,12 +13,11 @@ layout(push_constant, std430) uniform ScanReduce {
     StateIn state;
     UintsIn values;
     UintsOut partials;
-    uint which;
 };
 
 void main() {
     uint tile = workgroup_index();
-    uint length = scan_length(state, which);
+    uint length = state.state.offset_count;
     uint first = (tile * gl_WorkGroupSize.x + gl_LocalInvocationID.x) * ITEMS_EACH;
     uint sum = 0u;
     for (uint i = first; i < min(first + ITEMS_EACH, length); ++i) {

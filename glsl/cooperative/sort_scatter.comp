@@ -13,7 +13,9 @@ layout(push_constant, std430) uniform SortScatter {
     UintsInOut keys_b;
     UintsInOut values_a;
     UintsInOut values_b;
-    UintsIn table; // scanned: where the tile's first key of a digit goes
+    UintsIn table; // scanned: how many keys of a digit stand in the tiles before
+    UintsIn sums; // keys of each digit
+    StateOut kept; // the same state, of which the first pass writes a word
     uint pass;
 };
 
@@ -42,8 +44,13 @@ void scatter_alone() {
     Buffers buffers = buffers_of(pass);
     uint begin = state.state.first_pair;
     uint next[1u << SORT_BITS]; // where the next key of a digit goes
+    uint row = begin; // where the first key of a digit goes
     for (uint digit = 0u; digit < 1u << bits; ++digit) {
-        next[digit] = begin + table.word[digit * tile_count + tile];
+        next[digit] = row + table.word[digit * tile_count + tile];
+        row += sums.word[digit];
+    }
+    if (pass == 0u && tile == 0u) {
+        kept.state.kept_count = row - begin;
     }
     uint first = begin + tile * KEYS_EACH;
     uint last = min(first + KEYS_EACH, begin + pair_count);
@@ -76,14 +83,25 @@ void scatter_together() {
     uint last = min(first + KEYS_EACH, begin + pair_count);
     count_run(buffers.keys, pass, bits, sentinel, first, last);
     barrier();
+    uint row = begin; // where the first key of digit `reached` goes
+    uint reached = 0u;
     for (uint digit = gl_LocalInvocationID.x; digit < 1u << bits; digit += gl_WorkGroupSize.x) {
-        uint next = begin + table.word[digit * tile_count + tile];
+        for (; reached < digit; ++reached) {
+            row += sums.word[reached];
+        }
+        uint next = row + table.word[digit * tile_count + tile];
         for (uint column = 0u; column < gl_WorkGroupSize.x; ++column) {
             uint i = digit * gl_WorkGroupSize.x + column;
             uint count = counter[i];
             counter[i] = next;
             next += count;
         }
+    }
+    if (pass == 0u && tile == 0u && gl_LocalInvocationID.x == 0u) {
+        for (; reached < 1u << bits; ++reached) {
+            row += sums.word[reached];
+        }
+        kept.state.kept_count = row - begin;
     }
     barrier();
     for (uint i = first; i < last; ++i) {

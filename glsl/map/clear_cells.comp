@@ -3,29 +3,39 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// Empties the cells in use: one invocation, eight of them.
+// Empties the cells of the bricks that triangles may lie in: an invocation, a slice of a brick. What the others hold is never looked at.
 
+#include "shared/brick.glsl"
 #include "shared/build.glsl"
 
 layout(local_size_x_id = 0) in;
 layout(local_size_x = 64) in;
 
-layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer CellsOut { uvec4 pair[]; };
+layout(buffer_reference, std430, buffer_reference_align = 8) writeonly buffer CellsOut { uvec2 range[]; };
 
 layout(push_constant, std430) uniform ClearCells {
     GridwalkGrid grid;
+    UintsIn used;
     CellsOut cells;
 };
 
-// configure counts on it; the cells' memory is rounded up to it.
-const uint CELLS_EACH = 8u;
-
 void main() {
-    uint first = invocation_index() * CELLS_EACH;
-    if (first >= grid.header.cell_count) {
+    uvec3 resolution = grid.header.resolution;
+    uint slice = invocation_index();
+    uint index = slice / BRICK_SIZE;
+    if (index >= brick_count_of(brick_resolution(resolution)) || used.word[index] == 0u) {
         return;
     }
-    for (uint i = 0u; i < CELLS_EACH / 2u; ++i) {
-        cells.pair[first / 2u + i] = uvec4(0u);
+    BrickCells brick = brick_cells(index, resolution);
+    uint z = slice % BRICK_SIZE;
+    if (z >= brick.size.z) {
+        return;
+    }
+    for (uint y = 0u; y < brick.size.y; ++y) {
+        uint row = cell_id(brick.low + uvec3(0u, y, z), resolution);
+        for (uint x = 0u; x < BRICK_SIZE; ++x) {
+            // The last again where the grid ends: no branch.
+            cells.range[row + min(x, brick.size.x - 1u)] = uvec2(0u);
+        }
     }
 }

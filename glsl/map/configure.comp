@@ -42,7 +42,6 @@ const float PAD = 9.5367431640625e-07; // 2^-20
 const float MIN_CELL_IN_PADS = 4.0;
 const float FAR = 4.0;
 const float LEAST_MIDDLE = 7.888609052210118e-31; // 2^-100
-const uint CELLS_EACH = 8u; // clear_cells
 
 // The middle of an interval that lies far from zero, for the scene's size. All its points are then between half and twice the middle, and
 // no difference is denormal: subtracting the middle is exact.
@@ -184,11 +183,11 @@ void main() {
     next.overflow = overflow;
     state.state = next;
 
-    arguments.arguments.clear_cells = uvec4(split_workgroups((cell_count + CELLS_EACH - 1u) / CELLS_EACH, MAP_SIZE), 0u);
     uvec3 bricks_along = brick_resolution(resolution);
     uint brick_count = bricks_along.x * bricks_along.y * bricks_along.z;
     arguments.arguments.brick_reduce = uvec4(split_workgroups((brick_count + BRICK_TILE - 1u) / BRICK_TILE, 1u), 0u);
-    arguments.arguments.brick_distance = uvec4(split_workgroups(brick_count, MAP_SIZE), 0u);
+    arguments.arguments.bricks = uvec4(split_workgroups(brick_count, MAP_SIZE), 0u);
+    arguments.arguments.clear_cells = uvec4(split_workgroups(BRICK_SIZE * brick_count, MAP_SIZE), 0u);
 
     report.report.triangles = triangle_count;
     report.report.dropped = bounds.dropped;

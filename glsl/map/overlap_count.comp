@@ -7,6 +7,7 @@
 // one all; that has no bit. A small box is kept with its mask, for the emission. The count after the last triangle is zero, so that the scan
 // leaves the total there.
 
+#include "shared/brick.glsl"
 #include "shared/gather.glsl"
 #include "shared/overlap.glsl"
 
@@ -20,7 +21,37 @@ layout(push_constant, std430) uniform OverlapCount {
     TriangleWordsInOut triangles;
     UintsOut counts;
     UintsOut boxes; // three words a triangle: mask, first cell, sizes along x and y
+    UintsOut used; // a word a brick: 1 if a triangle may lie in it; of large boxes their emission tells
 };
+
+// Of a small box. All invocations that write a word write the same.
+void mark_bricks(CellBox box, uint count, uvec3 along) {
+    uvec3 low = box.low / BRICK_SIZE;
+    uvec3 more = box.high / BRICK_SIZE - low;
+    uint brick = brick_id(low, along);
+    if (max(more.x, max(more.y, more.z)) > 1u) {
+        uvec3 cell = box.low;
+        for (uint i = 0u; i < count; ++i) {
+            used.word[brick_id(cell / BRICK_SIZE, along)] = 1u;
+            cell = next_cell(box, cell);
+        }
+        return;
+    }
+    uint y = more.y * along.x;
+    uint z = more.z * along.x * along.y;
+    used.word[brick] = 1u;
+    if ((more.x | more.y) != 0u) {
+        used.word[brick + more.x] = 1u;
+        used.word[brick + y] = 1u;
+        used.word[brick + more.x + y] = 1u;
+    }
+    if (z != 0u) {
+        used.word[brick + z] = 1u;
+        used.word[brick + more.x + z] = 1u;
+        used.word[brick + y + z] = 1u;
+        used.word[brick + more.x + y + z] = 1u;
+    }
+}
 
 void main() {
     uint triangle = invocation_index();
@@ -63,6 +94,9 @@ void main() {
                 cell = next_cell(box, cell);
             }
             count = uint(bitCount(mask));
+        }
+        if (count <= SMALL_BOX) {
+            mark_bricks(box, cells_of(box), brick_resolution(header.resolution));
         }
     }
     counts.word[triangle] = count;

@@ -6,6 +6,7 @@
 // Writes the pairs (cell id, triangle) of the triangles with large boxes: one invocation, a run of consecutive pairs, so the work is
 // balanced whatever a triangle's size. Only if there are such triangles.
 
+#include "shared/brick.glsl"
 #include "shared/build.glsl"
 #include "shared/overlap.glsl"
 #include "shared/ping_pong.glsl"
@@ -25,6 +26,7 @@ layout(push_constant, std430) uniform OverlapEmitLarge {
     UintsOut keys_b;
     UintsOut values_a;
     UintsOut values_b;
+    UintsOut used; // a word a brick: 1 if a triangle may lie in it
 };
 
 // The last triangle whose first pair is not after `pair`: the one that owns it. At most 27 turns.
@@ -54,6 +56,7 @@ void main() {
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
 
+    uvec3 bricks_along = brick_resolution(header.resolution);
     uint triangle = owner(first, triangle_count);
     // At most PAIRS_EACH turns of each loop: each triangle that is passed has a pair.
     for (uint pair = first; pair < last;) {
@@ -74,6 +77,7 @@ void main() {
                 bool overlaps = !test || meets(axes, header, cell - box.low);
                 keys.word[i] = overlaps ? cell_id(cell, header.resolution) : header.cell_count;
                 values.word[i] = 3u * triangle;
+                used.word[brick_id(cell / BRICK_SIZE, bricks_along)] = 1u;
                 cell = next_cell(box, cell);
             }
         }

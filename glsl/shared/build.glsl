@@ -16,7 +16,6 @@ struct BuildState {
     uint pair_count; // at most the capacity
     uint key_bits;
     uint pass_count; // digits in use
-    uint table_count; // entries of the digit table
     uint overflow; // OVERFLOW_* bits
     uint triangle_total; // of all geometries, saturating; triangle_count is at most the capacity
     uint digit_bits; // of each pass
@@ -38,14 +37,13 @@ const uint OVERFLOW_LEAVES = 8u;
 // Host twin: gridwalk_core::layout::DispatchArguments; each is a VkDispatchIndirectCommand and a word of padding. A pass that is not in
 // use has zero groups.
 struct DispatchArguments {
-    uvec4 clear_cells;
     uvec4 emit_large;
     uvec4 sort[MAX_PASSES];
     uvec4 table_scan[MAX_PASSES];
-    uvec4 table_spine[MAX_PASSES];
     uvec4 cell_ranges;
     uvec4 brick_reduce;
-    uvec4 brick_distance;
+    uvec4 bricks; // one invocation each
+    uvec4 clear_cells;
     // Written only where geometries are counted on the device.
     uvec4 gather;
     uvec4 overlap_count;
@@ -59,11 +57,10 @@ struct LeafArguments {
     uvec4 split_cells;
     uvec4 count;
     uvec4 offsets_scan;
-    uvec4 offsets_spine;
+    uvec4 args; // of leaf_args
     uvec4 emit;
     uvec4 sort[MAX_PASSES];
     uvec4 table_scan[MAX_PASSES];
-    uvec4 table_spine[MAX_PASSES];
     uvec4 cell_ranges;
     uvec4 distance;
 };
@@ -104,6 +101,9 @@ struct Report {
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer ArgumentsOut { DispatchArguments arguments; };
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer ReportOut { Report report; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer ReportInOut { Report report; };
+
+// Pairs that a pass of the sort reads. The first leaves those without a cell behind.
+uint pairs_of(StateIn state, uint pass) { return pass == 0u ? state.state.pair_count : state.state.kept_count; }
 
 uint saturating_add(uint a, uint b) {
     uint sum = a + b;

@@ -35,7 +35,7 @@ void write_triangle(TriangleWordsOut triangles, uint triangle, vec3 v0, vec3 v1,
 // The head of a build's state, from which all later steps take the number of triangles.
 BuildState gathered_state(uint triangle_count, uint triangle_total) {
     uint overflow = triangle_total > triangle_count ? OVERFLOW_TRIANGLES : 0u;
-    return BuildState(triangle_count, triangle_count + 1u, 0u, 0u, 0u, 0u, 0u, overflow, triangle_total, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+    return BuildState(triangle_count, triangle_count + 1u, 0u, 0u, 0u, 0u, overflow, triangle_total, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 }
 
 #endif

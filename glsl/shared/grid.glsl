@@ -7,7 +7,7 @@
 
 #include "shared/types.glsl"
 
-// [begin, end) in the references; {0, 0} for an empty cell. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
+// [begin, end) in the references; {0, 0} for an empty cell, but nothing that counts where its brick is empty. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
 // level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words; {d, 0} for an empty one: all leaf
 // cells of the same cell that are closer than d in the maximum norm are empty, and d = 0 says no more than d = 1.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };

@@ -2,6 +2,7 @@
 #ifndef OCCUPANCY_GLSL
 #define OCCUPANCY_GLSL
 
+#include "shared/brick.glsl"
 #include "shared/scan.glsl"
 #include "shared/split.glsl"
 
@@ -23,21 +24,6 @@ struct TileOccupancy {
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer OccupancyInOut { TileOccupancy tile[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer OccupancyIn { TileOccupancy tile[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer OccupancyOut { TileOccupancy tile[]; };
-
-// The cells of a brick.
-struct BrickCells {
-    uvec3 low;
-    uvec3 size; // below BRICK_SIZE at the grid's upper sides
-};
-
-BrickCells brick_cells(uint index, uvec3 resolution) {
-    uvec3 bricks_along = brick_resolution(resolution);
-    uint slice = index / bricks_along.x;
-    BrickCells cells;
-    cells.low = BRICK_SIZE * uvec3(index - slice * bricks_along.x, slice % bricks_along.y, slice / bricks_along.y);
-    cells.size = min(uvec3(BRICK_SIZE), resolution - cells.low);
-    return cells;
-}
 
 shared TileOccupancy workgroup_partial[gl_WorkGroupSize.x];
 

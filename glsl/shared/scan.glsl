@@ -26,11 +26,4 @@ uint workgroup_exclusive_scan(uint mine, out uint total) {
     return result;
 }
 
-// Which numbers a scan runs over.
-const uint SCAN_OFFSETS = 0u;
-const uint SCAN_TABLE = 1u;
-const uint SCAN_FIRST_TABLE = 2u; // of the first pass: its sum is the number of pairs that are kept
-
-uint scan_length(StateIn state, uint which) { return which == SCAN_OFFSETS ? state.state.offset_count : state.state.table_count; }
-
 #endif

@@ -20,9 +20,6 @@ shared uint counter[SORT_ALONE ? 1u : (1u << SORT_BITS) * gl_WorkGroupSize.x];
 // `bits` a digit, at most SORT_BITS.
 uint digit_of(uint key, uint pass, uint bits) { return (key >> (pass * bits)) & ((1u << bits) - 1u); }
 
-// Pairs that a pass reads. The first leaves those without a cell behind.
-uint pairs_of(StateIn state, uint pass) { return pass == 0u ? state.state.pair_count : state.state.kept_count; }
-
 void count_run(UintsIn keys, uint pass, uint bits, uint sentinel, uint first, uint last) {
     uint column = gl_LocalInvocationID.x;
     for (uint digit = 0u; digit < 1u << bits; ++digit) {

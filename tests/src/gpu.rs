@@ -9,7 +9,7 @@ use gridwalk::{
     BuildInfo, BuildOptions, Capacity, DeviceDesc, Geometry, Hit, Ray, RayCount, RaySortInfo, Region, Report, Shape, Timestamps, TraceInfo,
     Tracer, cmd_barrier,
 };
-use gridwalk_core::grid::brick_resolution;
+use gridwalk_core::grid::{BRICK_SIZE, brick_resolution, cell_id, cell_of};
 use gridwalk_core::layout::{Brick, GridHeader};
 use gridwalk_core::walk::Grid;
 use gridwalk_render::{Buffer, BufferDesc, BufferKind, Context, ContextDesc};
@@ -138,11 +138,20 @@ impl Built {
         self.grid.read(0, 1)[0]
     }
 
-    /// Begin and end of each cell's list, or where a split cell's leaf cells are; and behind the cells the leaf cells.
+    /// Begin and end of each cell's list, or where a split cell's leaf cells are; and behind the cells the leaf cells. Cells of empty bricks,
+    /// which hold nothing that counts, are empty here.
     pub fn cells(&self) -> Vec<[u32; 2]> {
         let header = self.header();
         let leaf_cells = if self.info.capacity.leaf_cells > 0 { self.report.leaf_cells.min(self.info.capacity.leaf_cells) } else { 0 };
-        self.grid.read(self.offset(header.cells), (header.cell_count + leaf_cells) as usize)
+        let mut cells: Vec<[u32; 2]> = self.grid.read(self.offset(header.cells), (header.cell_count + leaf_cells) as usize);
+        let bricks = self.bricks();
+        for (id, range) in (0..header.cell_count).zip(&mut cells) {
+            let brick = cell_of(id, header.resolution).map(|n| n / BRICK_SIZE);
+            if bricks[cell_id(brick, brick_resolution(header.resolution)) as usize].mask == [0, 0] {
+                *range = [0, 0];
+            }
+        }
+        cells
     }
 
     /// The triangles in the lists of all cells, one after another; then in those of all leaf cells.

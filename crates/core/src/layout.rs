@@ -158,8 +158,6 @@ pub struct BuildState {
     pub key_bits: u32,
     /// Digits in use.
     pub pass_count: u32,
-    /// Entries of the sort's digit table.
-    pub table_count: u32,
     /// [`OVERFLOW_PAIRS`], [`OVERFLOW_CELLS`], [`OVERFLOW_TRIANGLES`].
     pub overflow: u32,
     /// Triangles of all geometries, saturating; `triangle_count` is at most the capacity.
@@ -186,27 +184,25 @@ pub struct BuildState {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct DispatchArguments {
-    /// Of `clear_cells`.
-    pub clear_cells: [u32; 4],
     /// Of `overlap_emit_large`.
     pub emit_large: [u32; 4],
     /// Of `sort_histogram` and `sort_scatter`, for each pass.
     pub sort: [[u32; 4]; MAX_PASSES],
-    /// Of the reduce and the downsweep of the digit table's scan, for each pass.
+    /// Of `table_scan`, for each pass.
     pub table_scan: [[u32; 4]; MAX_PASSES],
-    /// Of that scan's spine, for each pass.
-    pub table_spine: [[u32; 4]; MAX_PASSES],
     /// Of `cell_ranges`.
     pub cell_ranges: [u32; 4],
     /// Of `brick_reduce`.
     pub brick_reduce: [u32; 4],
-    /// Of `brick_distance_x`, `_y` and `_z`.
-    pub brick_distance: [u32; 4],
+    /// Of `clear_bricks`, `brick_distance_x`, `_y` and `_z`: an invocation a brick.
+    pub bricks: [u32; 4],
+    /// Of `clear_cells`: an invocation a slice of a brick.
+    pub clear_cells: [u32; 4],
     /// Of `gather_records`; this and those below are written only where geometries are counted on the device.
     pub gather: [u32; 4],
     /// Of `overlap_count` and `overlap_emit`.
     pub overlap_count: [u32; 4],
-    /// Of the reduce and the downsweep of the offsets' scan.
+    /// Of `scan_reduce` over its counts, and of `pair_args`, which scans them.
     pub offsets_scan: [u32; 4],
     /// Of `ray_keys`: written only where rays are sorted; then only this and the first passes' of the sort are.
     pub ray_keys: [u32; 4],
@@ -220,18 +216,16 @@ pub struct LeafArguments {
     pub split_cells: [u32; 4],
     /// Of `leaf_count`.
     pub count: [u32; 4],
-    /// Of the reduce and the downsweep of its counts' scan.
+    /// Of `scan_reduce` over its counts.
     pub offsets_scan: [u32; 4],
-    /// Of that scan's spine.
-    pub offsets_spine: [u32; 4],
+    /// Of `leaf_args`, which scans them.
+    pub args: [u32; 4],
     /// Of `leaf_emit`.
     pub emit: [u32; 4],
     /// Of `sort_histogram` and `sort_scatter`, for each pass.
     pub sort: [[u32; 4]; MAX_PASSES],
-    /// Of the reduce and the downsweep of the digit table's scan, for each pass.
+    /// Of `table_scan`, for each pass.
     pub table_scan: [[u32; 4]; MAX_PASSES],
-    /// Of that scan's spine, for each pass.
-    pub table_spine: [[u32; 4]; MAX_PASSES],
     /// Of `cell_ranges`.
     pub cell_ranges: [u32; 4],
     /// Of `leaf_distance`.

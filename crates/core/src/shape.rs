@@ -111,10 +111,31 @@ impl Shape {
         if self.sort_alone { self.sort_size } else { 1 }
     }
 
+    /// Invocations a workgroup of `table_scan`.
+    const fn table_scan_size(&self) -> u32 {
+        if !self.sort_alone {
+            self.scan_size
+        } else if self.map_size < 64 {
+            self.map_size
+        } else {
+            64
+        }
+    }
+
+    /// Rows of the digit table a workgroup of `table_scan`.
+    pub const fn table_rows(&self) -> u32 {
+        if self.sort_alone { self.table_scan_size() } else { 1 }
+    }
+
     /// Workgroups that reduce the scene box; at least one, so that an empty scene has a box of no triangle.
     pub const fn bounds_tiles(&self, triangles: u32) -> u32 {
         let tiles = triangles.div_ceil(self.bounds_tile());
         if tiles == 0 { 1 } else { tiles }
+    }
+
+    /// Sums that are kept of the tiles of a scan over triangles or pairs, and a number behind them, or of the rows of the digit table.
+    pub fn scan_partials(&self, triangles: u32, pairs: u32) -> u32 {
+        (triangles.max(pairs) + 1).div_ceil(self.scan_tile()).max(1 << self.sort_bits)
     }
 
     /// Entries of the sort's digit table: a row a digit, a column a tile.
@@ -136,6 +157,7 @@ impl Shape {
             "KEYS_EACH" => self.sort_keys,
             "SORT_ALONE" => self.sort_alone.into(),
             "SORT_TILE" => self.sort_tile(),
+            "TABLE_ROWS" => self.table_rows(),
             "SORT_TILES" => self.sort_tiles(),
             "SPLIT_CELLS_EACH" => self.measured_cells(),
             "PAIRS_EACH" => self.emit_pairs,
@@ -150,7 +172,8 @@ impl Shape {
         match kernel.name {
             "sort_histogram" | "sort_scatter" => self.sort_size,
             "bounds_spine" | "brick_reduce" | "gather" | "gather_records" | "geometry_scan" | "report_spine" | "scan_reduce"
-            | "scan_spine" | "scan_downsweep" | "split_cells" => self.scan_size,
+            | "pair_args" | "leaf_args" | "split_cells" => self.scan_size,
+            "table_scan" => self.table_scan_size(),
             _ => self.map_size,
         }
     }

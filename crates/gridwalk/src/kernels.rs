@@ -99,8 +99,14 @@ pub static BRICK_REDUCE: Kernel = Kernel {
     spirv: spirv!("../spirv/brick_reduce.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 32,
-    accesses: &[("grid", Access::Read), ("cells", Access::Read), ("bricks", Access::Write), ("partials", Access::Write)],
+    push_constant_size: 40,
+    accesses: &[
+        ("grid", Access::Read),
+        ("used", Access::Read),
+        ("cells", Access::Read),
+        ("bricks", Access::Write),
+        ("partials", Access::Write),
+    ],
     spec_constants: &[(1, "BRICKS_EACH", 4)],
 };
 
@@ -128,6 +134,18 @@ pub static CELL_RANGES: Kernel = Kernel {
     spec_constants: &[(1, "RANGE_PAIRS", 1)],
 };
 
+/// Kernel `clear_bricks`, from `glsl/map/clear_bricks.comp`.
+pub static CLEAR_BRICKS: Kernel = Kernel {
+    name: "clear_bricks",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/clear_bricks.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 16,
+    accesses: &[("grid", Access::Read), ("used", Access::Write)],
+    spec_constants: &[],
+};
+
 /// Kernel `clear_cells`, from `glsl/map/clear_cells.comp`.
 pub static CLEAR_CELLS: Kernel = Kernel {
     name: "clear_cells",
@@ -135,8 +153,8 @@ pub static CLEAR_CELLS: Kernel = Kernel {
     spirv: spirv!("../spirv/clear_cells.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 16,
-    accesses: &[("grid", Access::Read), ("cells", Access::Write)],
+    push_constant_size: 24,
+    accesses: &[("grid", Access::Read), ("used", Access::Read), ("cells", Access::Write)],
     spec_constants: &[],
 };
 
@@ -264,22 +282,29 @@ pub static GEOMETRY_SCAN: Kernel = Kernel {
     spec_constants: &[(1, "ITEMS_EACH", 16), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "BOUNDS_TILE", 2048)],
 };
 
-/// Kernel `leaf_args`, from `glsl/map/leaf_args.comp`.
+/// Kernel `leaf_args`, from `glsl/cooperative/leaf_args.comp`.
 pub static LEAF_ARGS: Kernel = Kernel {
     name: "leaf_args",
-    kind: Kind::Map,
+    kind: Kind::Cooperative,
     spirv: spirv!("../spirv/leaf_args.spv"),
-    local_size: [1, 1, 1],
-    local_size_ids: [None, None, None],
-    push_constant_size: 40,
-    accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::ReadWrite), ("report", Access::ReadWrite)],
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[
+        ("state", Access::ReadWrite),
+        ("partials", Access::Read),
+        ("offsets", Access::ReadWrite),
+        ("arguments", Access::ReadWrite),
+        ("report", Access::ReadWrite),
+    ],
     spec_constants: &[
-        (1, "MAP_SIZE", 64),
-        (2, "SORT_TILE", 8192),
-        (3, "SCAN_TILE", 4096),
+        (1, "ITEMS_EACH", 16),
+        (2, "MAP_SIZE", 64),
+        (3, "SORT_TILE", 8192),
         (4, "SORT_TILES", 1),
         (5, "SPLIT_CELLS_EACH", 1),
         (6, "RANGE_PAIRS", 1),
+        (7, "TABLE_ROWS", 1),
     ],
 };
 
@@ -371,13 +396,14 @@ pub static OVERLAP_COUNT: Kernel = Kernel {
     spirv: spirv!("../spirv/overlap_count.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 40,
+    push_constant_size: 48,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::ReadWrite),
         ("triangles", Access::ReadWrite),
         ("counts", Access::Write),
         ("boxes", Access::Write),
+        ("used", Access::Write),
     ],
     spec_constants: &[(1, "EXACT", 0)],
 };
@@ -411,7 +437,7 @@ pub static OVERLAP_EMIT_LARGE: Kernel = Kernel {
     spirv: spirv!("../spirv/overlap_emit_large.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 72,
+    push_constant_size: 80,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
@@ -422,26 +448,34 @@ pub static OVERLAP_EMIT_LARGE: Kernel = Kernel {
         ("keys_b", Access::Write),
         ("values_a", Access::Write),
         ("values_b", Access::Write),
+        ("used", Access::Write),
     ],
     spec_constants: &[(1, "PAIRS_EACH", 16), (2, "EXACT", 0)],
 };
 
-/// Kernel `pair_args`, from `glsl/map/pair_args.comp`.
+/// Kernel `pair_args`, from `glsl/cooperative/pair_args.comp`.
 pub static PAIR_ARGS: Kernel = Kernel {
     name: "pair_args",
-    kind: Kind::Map,
+    kind: Kind::Cooperative,
     spirv: spirv!("../spirv/pair_args.spv"),
-    local_size: [1, 1, 1],
-    local_size_ids: [None, None, None],
-    push_constant_size: 40,
-    accesses: &[("state", Access::ReadWrite), ("offsets", Access::Read), ("arguments", Access::Write), ("report", Access::ReadWrite)],
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 48,
+    accesses: &[
+        ("state", Access::ReadWrite),
+        ("partials", Access::Read),
+        ("offsets", Access::ReadWrite),
+        ("arguments", Access::Write),
+        ("report", Access::ReadWrite),
+    ],
     spec_constants: &[
-        (1, "MAP_SIZE", 64),
-        (2, "SORT_TILE", 8192),
-        (3, "SCAN_TILE", 4096),
+        (1, "ITEMS_EACH", 16),
+        (2, "MAP_SIZE", 64),
+        (3, "SORT_TILE", 8192),
         (4, "PAIRS_EACH", 16),
         (5, "SORT_TILES", 1),
         (6, "RANGE_PAIRS", 1),
+        (7, "TABLE_ROWS", 1),
     ],
 };
 
@@ -472,7 +506,7 @@ pub static RAY_SORT_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 32,
     accesses: &[("state", Access::Write), ("arguments", Access::Write), ("count", Access::Read)],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "SORT_TILE", 8192), (4, "SCAN_TILE", 4096), (5, "SORT_TILES", 1)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "SORT_TILE", 8192), (4, "TABLE_ROWS", 1), (5, "SORT_TILES", 1)],
 };
 
 /// Kernel `report_spine`, from `glsl/cooperative/report_spine.comp`.
@@ -494,18 +528,6 @@ pub static REPORT_SPINE: Kernel = Kernel {
     spec_constants: &[(1, "BRICK_TILE", 1024), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "SORT_BITS", 10)],
 };
 
-/// Kernel `scan_downsweep`, from `glsl/cooperative/scan_downsweep.comp`.
-pub static SCAN_DOWNSWEEP: Kernel = Kernel {
-    name: "scan_downsweep",
-    kind: Kind::Cooperative,
-    spirv: spirv!("../spirv/scan_downsweep.spv"),
-    local_size: [256, 1, 1],
-    local_size_ids: [Some(0), None, None],
-    push_constant_size: 32,
-    accesses: &[("state", Access::Read), ("partials", Access::Read), ("values", Access::ReadWrite)],
-    spec_constants: &[(1, "ITEMS_EACH", 16)],
-};
-
 /// Kernel `scan_reduce`, from `glsl/cooperative/scan_reduce.comp`.
 pub static SCAN_REDUCE: Kernel = Kernel {
     name: "scan_reduce",
@@ -513,21 +535,9 @@ pub static SCAN_REDUCE: Kernel = Kernel {
     spirv: spirv!("../spirv/scan_reduce.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 32,
+    push_constant_size: 24,
     accesses: &[("state", Access::Read), ("values", Access::Read), ("partials", Access::Write)],
     spec_constants: &[(1, "ITEMS_EACH", 16)],
-};
-
-/// Kernel `scan_spine`, from `glsl/cooperative/scan_spine.comp`.
-pub static SCAN_SPINE: Kernel = Kernel {
-    name: "scan_spine",
-    kind: Kind::Cooperative,
-    spirv: spirv!("../spirv/scan_spine.spv"),
-    local_size: [256, 1, 1],
-    local_size_ids: [Some(0), None, None],
-    push_constant_size: 32,
-    accesses: &[("state", Access::Read), ("partials", Access::ReadWrite), ("kept", Access::Write)],
-    spec_constants: &[(1, "ITEMS_EACH", 16), (2, "SCAN_TILE", 4096)],
 };
 
 /// Kernel `sort_histogram`, from `glsl/cooperative/sort_histogram.comp`.
@@ -549,7 +559,7 @@ pub static SORT_SCATTER: Kernel = Kernel {
     spirv: spirv!("../spirv/sort_scatter.spv"),
     local_size: [8, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 56,
+    push_constant_size: 72,
     accesses: &[
         ("state", Access::Read),
         ("keys_a", Access::ReadWrite),
@@ -557,6 +567,8 @@ pub static SORT_SCATTER: Kernel = Kernel {
         ("values_a", Access::ReadWrite),
         ("values_b", Access::ReadWrite),
         ("table", Access::Read),
+        ("sums", Access::Read),
+        ("kept", Access::Write),
     ],
     spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0)],
 };
@@ -578,6 +590,18 @@ pub static SPLIT_CELLS: Kernel = Kernel {
         ("split_cells", Access::Write),
     ],
     spec_constants: &[(1, "BRICKS_EACH", 4)],
+};
+
+/// Kernel `table_scan`, from `glsl/cooperative/table_scan.comp`.
+pub static TABLE_SCAN: Kernel = Kernel {
+    name: "table_scan",
+    kind: Kind::Cooperative,
+    spirv: spirv!("../spirv/table_scan.spv"),
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 32,
+    accesses: &[("state", Access::Read), ("table", Access::ReadWrite), ("sums", Access::Write)],
+    spec_constants: &[(1, "SORT_TILE", 8192), (2, "SORT_ALONE", 0)],
 };
 
 /// Kernel `trace_args`, from `glsl/map/trace_args.comp`.
@@ -614,6 +638,7 @@ pub static ALL: &[&Kernel] = &[
     &BRICK_REDUCE,
     &BRUTE_FORCE,
     &CELL_RANGES,
+    &CLEAR_BRICKS,
     &CLEAR_CELLS,
     &CLOSEST_CANDIDATE,
     &CLOSEST_HIT,
@@ -634,12 +659,11 @@ pub static ALL: &[&Kernel] = &[
     &RAY_KEYS,
     &RAY_SORT_ARGS,
     &REPORT_SPINE,
-    &SCAN_DOWNSWEEP,
     &SCAN_REDUCE,
-    &SCAN_SPINE,
     &SORT_HISTOGRAM,
     &SORT_SCATTER,
     &SPLIT_CELLS,
+    &TABLE_SCAN,
     &TRACE_ARGS,
     &TRACE_CONTINUE_ARGS,
 ];
@@ -740,13 +764,15 @@ const _: () = {
     use crate::push::BrickReduce as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 8);
+    assert!(core::mem::offset_of!(Host, used) == 8);
+    assert!(size(|host: &Host| &host.used) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 16);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(core::mem::offset_of!(Host, bricks) == 16);
+    assert!(core::mem::offset_of!(Host, bricks) == 24);
     assert!(size(|host: &Host| &host.bricks) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 24);
+    assert!(core::mem::offset_of!(Host, partials) == 32);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(size_of::<Host>() == 32);
+    assert!(size_of::<Host>() == 40);
 };
 const _: () = {
     use crate::push::BruteForce as Host;
@@ -782,27 +808,25 @@ const _: () = {
     assert!(size(|host: &Host| &host.key_bits) == 4);
     assert!(core::mem::offset_of!(Host, pass_count) == 20);
     assert!(size(|host: &Host| &host.pass_count) == 4);
-    assert!(core::mem::offset_of!(Host, table_count) == 24);
-    assert!(size(|host: &Host| &host.table_count) == 4);
-    assert!(core::mem::offset_of!(Host, overflow) == 28);
+    assert!(core::mem::offset_of!(Host, overflow) == 24);
     assert!(size(|host: &Host| &host.overflow) == 4);
-    assert!(core::mem::offset_of!(Host, triangle_total) == 32);
+    assert!(core::mem::offset_of!(Host, triangle_total) == 28);
     assert!(size(|host: &Host| &host.triangle_total) == 4);
-    assert!(core::mem::offset_of!(Host, digit_bits) == 36);
+    assert!(core::mem::offset_of!(Host, digit_bits) == 32);
     assert!(size(|host: &Host| &host.digit_bits) == 4);
-    assert!(core::mem::offset_of!(Host, has_large) == 40);
+    assert!(core::mem::offset_of!(Host, has_large) == 36);
     assert!(size(|host: &Host| &host.has_large) == 4);
-    assert!(core::mem::offset_of!(Host, kept_count) == 44);
+    assert!(core::mem::offset_of!(Host, kept_count) == 40);
     assert!(size(|host: &Host| &host.kept_count) == 4);
-    assert!(core::mem::offset_of!(Host, sentinel) == 48);
+    assert!(core::mem::offset_of!(Host, sentinel) == 44);
     assert!(size(|host: &Host| &host.sentinel) == 4);
-    assert!(core::mem::offset_of!(Host, first_pair) == 52);
+    assert!(core::mem::offset_of!(Host, first_pair) == 48);
     assert!(size(|host: &Host| &host.first_pair) == 4);
-    assert!(core::mem::offset_of!(Host, first_cell) == 56);
+    assert!(core::mem::offset_of!(Host, first_cell) == 52);
     assert!(size(|host: &Host| &host.first_cell) == 4);
-    assert!(core::mem::offset_of!(Host, split_cells) == 60);
+    assert!(core::mem::offset_of!(Host, split_cells) == 56);
     assert!(size(|host: &Host| &host.split_cells) == 4);
-    assert!(core::mem::offset_of!(Host, least_split) == 64);
+    assert!(core::mem::offset_of!(Host, least_split) == 60);
     assert!(size(|host: &Host| &host.least_split) == 4);
 };
 const _: () = {
@@ -818,12 +842,22 @@ const _: () = {
     assert!(size_of::<Host>() == 32);
 };
 const _: () = {
+    use crate::push::ClearBricks as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, used) == 8);
+    assert!(size(|host: &Host| &host.used) == 8);
+    assert!(size_of::<Host>() == 16);
+};
+const _: () = {
     use crate::push::ClearCells as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 8);
+    assert!(core::mem::offset_of!(Host, used) == 8);
+    assert!(size(|host: &Host| &host.used) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 16);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(size_of::<Host>() == 16);
+    assert!(size_of::<Host>() == 24);
 };
 const _: () = {
     use crate::push::ClosestCandidate as Host;
@@ -929,29 +963,27 @@ const _: () = {
 };
 const _: () = {
     use gridwalk_core::layout::DispatchArguments as Host;
-    assert!(core::mem::offset_of!(Host, clear_cells) == 0);
-    assert!(size(|host: &Host| &host.clear_cells) == 16);
-    assert!(core::mem::offset_of!(Host, emit_large) == 16);
+    assert!(core::mem::offset_of!(Host, emit_large) == 0);
     assert!(size(|host: &Host| &host.emit_large) == 16);
-    assert!(core::mem::offset_of!(Host, sort) == 32);
+    assert!(core::mem::offset_of!(Host, sort) == 16);
     assert!(size(|host: &Host| &host.sort) == 128);
-    assert!(core::mem::offset_of!(Host, table_scan) == 160);
+    assert!(core::mem::offset_of!(Host, table_scan) == 144);
     assert!(size(|host: &Host| &host.table_scan) == 128);
-    assert!(core::mem::offset_of!(Host, table_spine) == 288);
-    assert!(size(|host: &Host| &host.table_spine) == 128);
-    assert!(core::mem::offset_of!(Host, cell_ranges) == 416);
+    assert!(core::mem::offset_of!(Host, cell_ranges) == 272);
     assert!(size(|host: &Host| &host.cell_ranges) == 16);
-    assert!(core::mem::offset_of!(Host, brick_reduce) == 432);
+    assert!(core::mem::offset_of!(Host, brick_reduce) == 288);
     assert!(size(|host: &Host| &host.brick_reduce) == 16);
-    assert!(core::mem::offset_of!(Host, brick_distance) == 448);
-    assert!(size(|host: &Host| &host.brick_distance) == 16);
-    assert!(core::mem::offset_of!(Host, gather) == 464);
+    assert!(core::mem::offset_of!(Host, bricks) == 304);
+    assert!(size(|host: &Host| &host.bricks) == 16);
+    assert!(core::mem::offset_of!(Host, clear_cells) == 320);
+    assert!(size(|host: &Host| &host.clear_cells) == 16);
+    assert!(core::mem::offset_of!(Host, gather) == 336);
     assert!(size(|host: &Host| &host.gather) == 16);
-    assert!(core::mem::offset_of!(Host, overlap_count) == 480);
+    assert!(core::mem::offset_of!(Host, overlap_count) == 352);
     assert!(size(|host: &Host| &host.overlap_count) == 16);
-    assert!(core::mem::offset_of!(Host, offsets_scan) == 496);
+    assert!(core::mem::offset_of!(Host, offsets_scan) == 368);
     assert!(size(|host: &Host| &host.offsets_scan) == 16);
-    assert!(core::mem::offset_of!(Host, ray_keys) == 512);
+    assert!(core::mem::offset_of!(Host, ray_keys) == 384);
     assert!(size(|host: &Host| &host.ray_keys) == 16);
 };
 const _: () = {
@@ -1095,17 +1127,19 @@ const _: () = {
     use crate::push::LeafArgs as Host;
     assert!(core::mem::offset_of!(Host, state) == 0);
     assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, offsets) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 8);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 16);
     assert!(size(|host: &Host| &host.offsets) == 8);
-    assert!(core::mem::offset_of!(Host, arguments) == 16);
+    assert!(core::mem::offset_of!(Host, arguments) == 24);
     assert!(size(|host: &Host| &host.arguments) == 8);
-    assert!(core::mem::offset_of!(Host, report) == 24);
+    assert!(core::mem::offset_of!(Host, report) == 32);
     assert!(size(|host: &Host| &host.report) == 8);
-    assert!(core::mem::offset_of!(Host, pair_capacity) == 32);
+    assert!(core::mem::offset_of!(Host, pair_capacity) == 40);
     assert!(size(|host: &Host| &host.pair_capacity) == 4);
-    assert!(core::mem::offset_of!(Host, pass_capacity) == 36);
+    assert!(core::mem::offset_of!(Host, pass_capacity) == 44);
     assert!(size(|host: &Host| &host.pass_capacity) == 4);
-    assert!(size_of::<Host>() == 40);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use crate::push::LeafCount as Host;
@@ -1209,7 +1243,9 @@ const _: () = {
     assert!(size(|host: &Host| &host.counts) == 8);
     assert!(core::mem::offset_of!(Host, boxes) == 32);
     assert!(size(|host: &Host| &host.boxes) == 8);
-    assert!(size_of::<Host>() == 40);
+    assert!(core::mem::offset_of!(Host, used) == 40);
+    assert!(size(|host: &Host| &host.used) == 8);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use crate::push::OverlapEmit as Host;
@@ -1253,23 +1289,27 @@ const _: () = {
     assert!(size(|host: &Host| &host.values_a) == 8);
     assert!(core::mem::offset_of!(Host, values_b) == 64);
     assert!(size(|host: &Host| &host.values_b) == 8);
-    assert!(size_of::<Host>() == 72);
+    assert!(core::mem::offset_of!(Host, used) == 72);
+    assert!(size(|host: &Host| &host.used) == 8);
+    assert!(size_of::<Host>() == 80);
 };
 const _: () = {
     use crate::push::PairArgs as Host;
     assert!(core::mem::offset_of!(Host, state) == 0);
     assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, offsets) == 8);
+    assert!(core::mem::offset_of!(Host, partials) == 8);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 16);
     assert!(size(|host: &Host| &host.offsets) == 8);
-    assert!(core::mem::offset_of!(Host, arguments) == 16);
+    assert!(core::mem::offset_of!(Host, arguments) == 24);
     assert!(size(|host: &Host| &host.arguments) == 8);
-    assert!(core::mem::offset_of!(Host, report) == 24);
+    assert!(core::mem::offset_of!(Host, report) == 32);
     assert!(size(|host: &Host| &host.report) == 8);
-    assert!(core::mem::offset_of!(Host, pair_capacity) == 32);
+    assert!(core::mem::offset_of!(Host, pair_capacity) == 40);
     assert!(size(|host: &Host| &host.pair_capacity) == 4);
-    assert!(core::mem::offset_of!(Host, pass_capacity) == 36);
+    assert!(core::mem::offset_of!(Host, pass_capacity) == 44);
     assert!(size(|host: &Host| &host.pass_capacity) == 4);
-    assert!(size_of::<Host>() == 40);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use gridwalk_core::Ray as Host;
@@ -1369,18 +1409,6 @@ const _: () = {
     assert!(size_of::<Host>() == 56);
 };
 const _: () = {
-    use crate::push::ScanDownsweep as Host;
-    assert!(core::mem::offset_of!(Host, state) == 0);
-    assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 8);
-    assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, values) == 16);
-    assert!(size(|host: &Host| &host.values) == 8);
-    assert!(core::mem::offset_of!(Host, which) == 24);
-    assert!(size(|host: &Host| &host.which) == 4);
-    assert!(size_of::<Host>() == 32);
-};
-const _: () = {
     use crate::push::ScanReduce as Host;
     assert!(core::mem::offset_of!(Host, state) == 0);
     assert!(size(|host: &Host| &host.state) == 8);
@@ -1388,21 +1416,7 @@ const _: () = {
     assert!(size(|host: &Host| &host.values) == 8);
     assert!(core::mem::offset_of!(Host, partials) == 16);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, which) == 24);
-    assert!(size(|host: &Host| &host.which) == 4);
-    assert!(size_of::<Host>() == 32);
-};
-const _: () = {
-    use crate::push::ScanSpine as Host;
-    assert!(core::mem::offset_of!(Host, state) == 0);
-    assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 8);
-    assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, kept) == 16);
-    assert!(size(|host: &Host| &host.kept) == 8);
-    assert!(core::mem::offset_of!(Host, which) == 24);
-    assert!(size(|host: &Host| &host.which) == 4);
-    assert!(size_of::<Host>() == 32);
+    assert!(size_of::<Host>() == 24);
 };
 const _: () = {
     use crate::push::SortHistogram as Host;
@@ -1432,9 +1446,13 @@ const _: () = {
     assert!(size(|host: &Host| &host.values_b) == 8);
     assert!(core::mem::offset_of!(Host, table) == 40);
     assert!(size(|host: &Host| &host.table) == 8);
-    assert!(core::mem::offset_of!(Host, pass) == 48);
+    assert!(core::mem::offset_of!(Host, sums) == 48);
+    assert!(size(|host: &Host| &host.sums) == 8);
+    assert!(core::mem::offset_of!(Host, kept) == 56);
+    assert!(size(|host: &Host| &host.kept) == 8);
+    assert!(core::mem::offset_of!(Host, pass) == 64);
     assert!(size(|host: &Host| &host.pass) == 4);
-    assert!(size_of::<Host>() == 56);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use crate::push::SplitCells as Host;
@@ -1453,6 +1471,18 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, leaf_capacity) == 48);
     assert!(size(|host: &Host| &host.leaf_capacity) == 4);
     assert!(size_of::<Host>() == 56);
+};
+const _: () = {
+    use crate::push::TableScan as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, table) == 8);
+    assert!(size(|host: &Host| &host.table) == 8);
+    assert!(core::mem::offset_of!(Host, sums) == 16);
+    assert!(size(|host: &Host| &host.sums) == 8);
+    assert!(core::mem::offset_of!(Host, pass) == 24);
+    assert!(size(|host: &Host| &host.pass) == 4);
+    assert!(size_of::<Host>() == 32);
 };
 const _: () = {
     use crate::push::TraceArgs as Host;

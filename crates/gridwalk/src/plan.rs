@@ -185,7 +185,7 @@ pub enum Item {
     Barrier(Barrier),
 }
 
-const MAX_ITEMS: usize = 60 + 20 * MAX_PASSES;
+const MAX_ITEMS: usize = 60 + 12 * MAX_PASSES;
 
 /// A list of steps and barriers, without allocation.
 #[derive(Clone, Debug)]
@@ -200,7 +200,7 @@ impl Plan {
     }
 
     fn push(&mut self, item: Item) {
-        // The bound holds for every capacity: a pass of either level adds ten items, everything else fewer than 60.
+        // The bound holds for every capacity: a pass of either level adds six items, everything else fewer than 60.
         debug_assert!(self.len < MAX_ITEMS);
         if let Some(slot) = self.items.get_mut(self.len) {
             *slot = item;
@@ -262,10 +262,6 @@ pub struct BuildInputs {
     pub second_level: bool,
 }
 
-const SCAN_OFFSETS: u32 = 0;
-const SCAN_TABLE: u32 = 1;
-const SCAN_FIRST_TABLE: u32 = 2;
-
 /// Bit of [`Step::variant`] of `overlap_count`, `overlap_emit_large`, `leaf_count` and `leaf_emit`.
 pub(crate) const EXACT: u32 = 1;
 
@@ -281,36 +277,27 @@ fn map_groups(elements: u32, shape: &Shape) -> Dispatch {
     Dispatch::Direct(split_workgroups(elements.div_ceil(shape.map_size)))
 }
 
-fn scan(plan: &mut Plan, state: Buffer, which: u32, values: Buffer, groups: Dispatch, spine: Dispatch) {
-    let (values, partials, state) = (values.token(), Buffer::ScanPartials.token(), state.token());
-    plan.step(Step::new(&SCAN_REDUCE, groups, push::ScanReduce { state, values, partials, which, padding: 0 }));
-    plan.barrier(Barrier::Shader);
-    plan.step(Step::new(&SCAN_SPINE, spine, push::ScanSpine { state, partials, kept: state, which, padding: 0 }));
-    plan.barrier(Barrier::Shader);
-    plan.step(Step::new(&SCAN_DOWNSWEEP, groups, push::ScanDownsweep { state, partials, values, which, padding: 0 }));
-}
-
 /// Workgroups of a pass of the sort.
 struct SortGroups {
     sort: Dispatch,
     table_scan: Dispatch,
-    table_spine: Dispatch,
 }
 
 /// Sorts pairs, a digit a pass; after the last pass the values lie in `values_b`.
 fn sort(plan: &mut Plan, state: Buffer, passes: u32, values_b: Buffer, groups: impl Fn(usize) -> SortGroups) {
     use Buffer::*;
     let (keys_a, keys_b, values_a, values_b, table) = (KeysA.token(), KeysB.token(), ValuesA.token(), values_b.token(), Table.token());
+    let sums = ScanPartials.token();
     for pass in 0..passes {
         let groups = groups(pass as usize);
         plan.barrier(Barrier::Shader);
         let histogram = push::SortHistogram { state: state.token(), keys_a, keys_b, table, pass, padding: 0 };
         plan.step(Step::new(&SORT_HISTOGRAM, groups.sort, histogram));
         plan.barrier(Barrier::Shader);
-        let which = if pass == 0 { SCAN_FIRST_TABLE } else { SCAN_TABLE };
-        scan(plan, state, which, Table, groups.table_scan, groups.table_spine);
+        plan.step(Step::new(&TABLE_SCAN, groups.table_scan, push::TableScan { state: state.token(), table, sums, pass, padding: 0 }));
         plan.barrier(Barrier::Shader);
-        let scatter = push::SortScatter { state: state.token(), keys_a, keys_b, values_a, values_b, table, pass, padding: 0 };
+        let (state, kept) = (state.token(), state.token());
+        let scatter = push::SortScatter { state, keys_a, keys_b, values_a, values_b, table, sums, kept, pass, padding: 0 };
         plan.step(Step::new(&SORT_SCATTER, groups.sort, scatter));
     }
 }
@@ -395,26 +382,27 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
         },
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
-    plan.step(Step::new(
-        &CLEAR_CELLS,
-        argument(offset_of!(DispatchArguments, clear_cells)),
-        push::ClearCells { grid, cells: Cells.token() },
-    ));
+    // Which bricks are used stands where their distances will.
+    let (bricks, used) = (argument(offset_of!(DispatchArguments, bricks)), DistancesX.token());
+    plan.step(Step::new(&CLEAR_BRICKS, bricks, push::ClearBricks { grid, used }));
+    plan.barrier(Barrier::Shader);
     let exact = if inputs.exact { EXACT } else { 0 };
     let (offsets, boxes, triangles) = (Offsets.token(), CellBoxes.token(), Triangles.token());
     plan.step(
-        Step::new(&OVERLAP_COUNT, groups.overlap_count, push::OverlapCount { grid, state, triangles, counts: offsets, boxes })
+        Step::new(&OVERLAP_COUNT, groups.overlap_count, push::OverlapCount { grid, state, triangles, counts: offsets, boxes, used })
             .variant(exact),
     );
     plan.barrier(Barrier::Shader);
-    scan(&mut plan, State, SCAN_OFFSETS, Offsets, groups.offsets_scan, Dispatch::Direct([1, 1, 1]));
+    let partials = ScanPartials.token();
+    plan.step(Step::new(&SCAN_REDUCE, groups.offsets_scan, push::ScanReduce { state, values: offsets, partials }));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
         &PAIR_ARGS,
-        Dispatch::Direct([1, 1, 1]),
+        groups.offsets_scan,
         push::PairArgs {
-            state: State.token(),
-            offsets: Offsets.token(),
+            state,
+            partials,
+            offsets,
             arguments: Arguments.token(),
             report: Report.token(),
             pair_capacity: capacity.pairs,
@@ -427,12 +415,20 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     plan.step(Step::new(&OVERLAP_EMIT, groups.overlap_count, emission));
     // The two write different words, but of the same arrays, and hazards are told by arrays.
     plan.barrier(Barrier::Shader);
+    let emission = push::OverlapEmitLarge { grid, state, offsets, boxes, triangles, keys_a, keys_b, values_a, values_b, used };
     plan.step(Step::new(&OVERLAP_EMIT_LARGE, argument(offset_of!(DispatchArguments, emit_large)), emission).variant(exact));
     sort(&mut plan, State, passes, References, |pass| SortGroups {
         sort: argument(offset_of!(DispatchArguments, sort) + 16 * pass),
         table_scan: argument(offset_of!(DispatchArguments, table_scan) + 16 * pass),
-        table_spine: argument(offset_of!(DispatchArguments, table_spine) + 16 * pass),
     });
+    if passes == 0 {
+        plan.barrier(Barrier::Shader);
+    }
+    plan.step(Step::new(
+        &CLEAR_CELLS,
+        argument(offset_of!(DispatchArguments, clear_cells)),
+        push::ClearCells { grid, used, cells: Cells.token() },
+    ));
     plan.barrier(Barrier::Shader);
     plan.step(Step::new(
         &CELL_RANGES,
@@ -443,10 +439,9 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     plan.step(Step::new(
         &BRICK_REDUCE,
         argument(offset_of!(DispatchArguments, brick_reduce)),
-        push::BrickReduce { grid, cells: Cells.token(), bricks: Bricks.token(), partials: Occupancy.token() },
+        push::BrickReduce { grid, used, cells: Cells.token(), bricks: Bricks.token(), partials: Occupancy.token() },
     ));
     plan.barrier(Barrier::Shader);
-    let bricks = argument(offset_of!(DispatchArguments, brick_distance));
     let (x, y) = (DistancesX.token(), DistancesY.token());
     plan.step(Step::new(&BRICK_DISTANCE_X, bricks, push::BrickDistanceX { grid, bricks: Bricks.token(), distances: x }));
     plan.step(Step::new(
@@ -510,15 +505,15 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
         .variant(exact),
     );
     plan.barrier(Barrier::Shader);
-    let scan_groups = leaf_argument(offset_of!(Arguments, offsets_scan));
-    let spine = leaf_argument(offset_of!(Arguments, offsets_spine));
-    scan(plan, LeafState, SCAN_OFFSETS, KeysA, scan_groups, spine);
+    let partials = ScanPartials.token();
+    let reduce = push::ScanReduce { state, values: offsets, partials };
+    plan.step(Step::new(&SCAN_REDUCE, leaf_argument(offset_of!(Arguments, offsets_scan)), reduce));
     plan.barrier(Barrier::Shader);
     let (pair_capacity, pass_capacity) = (capacity.pairs, passes);
     plan.step(Step::new(
         &LEAF_ARGS,
-        Dispatch::Direct([1, 1, 1]),
-        push::LeafArgs { state, offsets, arguments, report, pair_capacity, pass_capacity },
+        leaf_argument(offset_of!(Arguments, args)),
+        push::LeafArgs { state, partials, offsets, arguments, report, pair_capacity, pass_capacity },
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
     let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), references);
@@ -541,7 +536,6 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
     sort(plan, LeafState, passes, References, |pass| SortGroups {
         sort: leaf_argument(offset_of!(Arguments, sort) + 16 * pass),
         table_scan: leaf_argument(offset_of!(Arguments, table_scan) + 16 * pass),
-        table_spine: leaf_argument(offset_of!(Arguments, table_spine) + 16 * pass),
     });
     plan.barrier(Barrier::Shader);
     let ranges = push::CellRanges { state, keys: keys_b, cells, report };
@@ -656,7 +650,6 @@ pub fn ray_sort_plan(rays: &RayInputs, shape: &Shape) -> Plan {
     sort(&mut plan, State, passes, Order, |_| SortGroups {
         sort: argument(offset_of!(DispatchArguments, sort)),
         table_scan: argument(offset_of!(DispatchArguments, table_scan)),
-        table_spine: Dispatch::Direct([1, 1, 1]),
     });
     plan
 }

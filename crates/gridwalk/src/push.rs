@@ -17,6 +17,7 @@ pub(crate) struct BoundsSpine {
 #[repr(C)]
 pub(crate) struct BrickReduce {
     pub(crate) grid: u64,
+    pub(crate) used: u64,
     pub(crate) cells: u64,
     pub(crate) bricks: u64,
     pub(crate) partials: u64,
@@ -50,17 +51,6 @@ pub(crate) struct SplitCells {
     pub(crate) padding: u32,
 }
 
-/// Of kernel `scan_downsweep`.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct ScanDownsweep {
-    pub(crate) state: u64,
-    pub(crate) partials: u64,
-    pub(crate) values: u64,
-    pub(crate) which: u32,
-    pub(crate) padding: u32,
-}
-
 /// Of kernel `scan_reduce`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -68,18 +58,16 @@ pub(crate) struct ScanReduce {
     pub(crate) state: u64,
     pub(crate) values: u64,
     pub(crate) partials: u64,
-    pub(crate) which: u32,
-    pub(crate) padding: u32,
 }
 
-/// Of kernel `scan_spine`.
+/// Of kernel `table_scan`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct ScanSpine {
+pub(crate) struct TableScan {
     pub(crate) state: u64,
-    pub(crate) partials: u64,
-    pub(crate) kept: u64,
-    pub(crate) which: u32,
+    pub(crate) table: u64,
+    pub(crate) sums: u64,
+    pub(crate) pass: u32,
     pub(crate) padding: u32,
 }
 
@@ -105,6 +93,8 @@ pub(crate) struct SortScatter {
     pub(crate) values_a: u64,
     pub(crate) values_b: u64,
     pub(crate) table: u64,
+    pub(crate) sums: u64,
+    pub(crate) kept: u64,
     pub(crate) pass: u32,
     pub(crate) padding: u32,
 }
@@ -149,11 +139,20 @@ pub(crate) struct CellRanges {
     pub(crate) report: u64,
 }
 
+/// Of kernel `clear_bricks`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ClearBricks {
+    pub(crate) grid: u64,
+    pub(crate) used: u64,
+}
+
 /// Of kernel `clear_cells`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct ClearCells {
     pub(crate) grid: u64,
+    pub(crate) used: u64,
     pub(crate) cells: u64,
 }
 
@@ -219,6 +218,7 @@ pub(crate) struct OverlapCount {
     pub(crate) triangles: u64,
     pub(crate) counts: u64,
     pub(crate) boxes: u64,
+    pub(crate) used: u64,
 }
 
 /// Of kernel `overlap_emit`.
@@ -237,13 +237,27 @@ pub(crate) struct OverlapEmit {
 }
 
 /// Of kernel `overlap_emit_large`.
-pub(crate) type OverlapEmitLarge = OverlapEmit;
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct OverlapEmitLarge {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) offsets: u64,
+    pub(crate) boxes: u64,
+    pub(crate) triangles: u64,
+    pub(crate) keys_a: u64,
+    pub(crate) keys_b: u64,
+    pub(crate) values_a: u64,
+    pub(crate) values_b: u64,
+    pub(crate) used: u64,
+}
 
 /// Of kernel `pair_args`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct PairArgs {
     pub(crate) state: u64,
+    pub(crate) partials: u64,
     pub(crate) offsets: u64,
     pub(crate) arguments: u64,
     pub(crate) report: u64,

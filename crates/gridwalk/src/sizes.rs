@@ -89,9 +89,6 @@ impl Packer {
     }
 }
 
-/// Cells that one invocation of `clear_cells` clears; its memory is rounded up to it.
-pub(crate) const CELLS_EACH: u64 = 8;
-
 /// Bricks of 4^3 cells that a grid of so many cells can have. With at most 4,096 cells along an axis the product of (n + 3) / 4 over the
 /// axes is greatest for a grid one cell thick: (a + 3) (b + 3) / 16 <= a b / 16 + 1,537.
 fn brick_capacity(capacity: &Capacity) -> u64 {
@@ -113,7 +110,7 @@ impl GridLayout {
         let mut packer = Packer(0);
         GridLayout {
             header: packer.part(size_of::<GridHeader>() as u64),
-            cells: packer.part((u64::from(capacity.cells.max(1)).next_multiple_of(CELLS_EACH) + u64::from(capacity.leaf_cells)) * 8),
+            cells: packer.part((u64::from(capacity.cells.max(1)) + u64::from(capacity.leaf_cells)) * 8),
             references: packer.part(u64::from(capacity.pairs.max(1)) * 4),
             triangles: packer.part(u64::from(capacity.triangles.max(1)) * 48),
             bricks: packer.part(brick_capacity(capacity) * size_of::<Brick>() as u64),
@@ -159,7 +156,7 @@ impl ScratchLayout {
             bounds_partials: packer.part(u64::from(shape.bounds_tiles(capacity.triangles)) * size_of::<Bounds>() as u64),
             offsets: packer.part(offsets * 4),
             cell_boxes: packer.part(u64::from(capacity.triangles.max(1)) * 12),
-            scan_partials: packer.part(offsets.max(table).max(pairs + 1).div_ceil(u64::from(shape.scan_tile())) * 4),
+            scan_partials: packer.part(u64::from(shape.scan_partials(capacity.triangles, capacity.pairs.max(1))) * 4),
             // The second level's offsets have an end.
             keys_a: packer.part((pairs + 1) * 4),
             keys_b: packer.part(pairs * 4),
@@ -249,7 +246,7 @@ impl RaySortLayout {
             keys_b: packer.part(4 * rays),
             values_a: packer.part(4 * rays),
             table: packer.part(4 * table),
-            scan_partials: packer.part(4 * table.div_ceil(u64::from(shape.scan_tile()))),
+            scan_partials: packer.part(4 << shape.sort_bits),
             size: packer.0,
         }
     }

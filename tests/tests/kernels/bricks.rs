@@ -2,7 +2,7 @@ use bytemuck::Zeroable;
 use gridwalk::Report;
 use gridwalk::kernels::{BRICK_DISTANCE_X, BRICK_DISTANCE_Y, BRICK_DISTANCE_Z, BRICK_REDUCE, REPORT_SPINE, SPLIT_CELLS};
 use gridwalk_core::dispatch::split_workgroups;
-use gridwalk_core::grid::{brick_resolution, cell_of};
+use gridwalk_core::grid::{brick_resolution, cell_id, cell_of};
 use gridwalk_core::layout::{Brick, BuildState, GridHeader, LeafArguments, SplitCell, TileOccupancy};
 use gridwalk_core::split::{leaf_count_of, leaf_level};
 use gridwalk_core::twin::brick_distance_x::brick_distance_x;
@@ -23,7 +23,7 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
     let header = GridHeader { cell_count, resolution, fine_shift: seed as u32 % 6, ..header(&Default::default(), 1.0, [0; 3]) };
     let mut random = Random::new(seed);
     let mut next = 0;
-    let cells: Vec<[u32; 2]> = (0..cell_count)
+    let mut cells: Vec<[u32; 2]> = (0..cell_count)
         .map(|_| {
             if random.unit() >= fill {
                 return [0, 0];
@@ -36,6 +36,19 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
     let count: u32 = brick_resolution(resolution).iter().product();
     let tiles = count.div_ceil(shape.brick_tile()) as usize;
     let len = count as usize;
+    // All bricks with a triangle, and some others, whose cells hold what is never looked at.
+    let mut used: Vec<u32> = (0..count).map(|_| u32::from(random.below(2) == 0)).collect();
+    for (index, _) in cells.iter().enumerate().filter(|(_, range)| range[1] != 0) {
+        let brick = cell_of(index as u32, resolution).map(|n| n / 4);
+        used[cell_id(brick, brick_resolution(resolution)) as usize] = 1;
+    }
+    for (index, range) in cells.iter_mut().enumerate() {
+        let brick = cell_of(index as u32, resolution).map(|n| n / 4);
+        if used[cell_id(brick, brick_resolution(resolution)) as usize] == 0 {
+            *range = [0, CANARY];
+        }
+    }
+    let used_memory = gpu.upload("used", &used);
     let grid = gpu.upload("grid", &[header]);
     let cell_memory = gpu.upload("cells", &cells);
     let bricks = gpu.guarded("bricks", 16 * len as u64);
@@ -43,11 +56,11 @@ fn check(gpu: &Gpu, resolution: [u32; 3], fill: f32, seed: u64) {
     let distances = [gpu.guarded("distances x", 4 * len as u64), gpu.guarded("distances y", 4 * len as u64)];
     let reduce_groups = split_workgroups(tiles as u32, 1);
     let groups = split_workgroups(count, shape.map_size);
-    gpu.launch(&BRICK_REDUCE, 0, &[&grid, &cell_memory, &bricks, &partials], &[], reduce_groups);
+    gpu.launch(&BRICK_REDUCE, 0, &[&grid, &used_memory, &cell_memory, &bricks, &partials], &[], reduce_groups);
 
     let mut expected = vec![Brick::zeroed(); len];
     let mut sums = vec![TileOccupancy::default(); tiles];
-    brick_reduce(&shape, reduce_groups, &header, &cells, &mut expected, &mut sums);
+    brick_reduce(&shape, reduce_groups, &header, &used, &cells, &mut expected, &mut sums);
     assert_same(&format!("{what}: bricks"), &bricks.read::<Brick>(0, len), &expected);
     assert_same(&format!("{what}: partials"), &partials.read::<TileOccupancy>(0, tiles), &sums);
 
@@ -120,7 +133,7 @@ fn check_split_cells(
     gpu.launch(&SPLIT_CELLS, 0, &memory.each_ref(), &[capacity], groups);
     let untouched: SplitCell = bytemuck::cast([CANARY; 8]);
     let mut expected = vec![untouched; len + 1];
-    split_cells(&shape, groups, header, state.least_split, cells, sums, &mut expected, capacity);
+    split_cells(&shape, groups, header, state.least_split, cells, bricks, sums, &mut expected, capacity);
     let found = memory[5].read::<SplitCell>(0, len + 1);
     assert_same(&format!("{what}: split cells"), &found, &expected);
     let (mut references, mut leaves) = (0, 0);

@@ -1,13 +1,14 @@
-//! Kernels of one workgroup at the largest sizes that the library admits. lavapipe ends all loops of an invocation, silently, after 65,535
+//! Kernels of one workgroup, or of one a row, at the largest sizes that the library admits. lavapipe ends all loops of an invocation, silently, after 65,535
 //! turns: here it would show.
 
-use gridwalk::kernels::{BOUNDS_SPINE, SCAN_SPINE};
+use gridwalk::kernels::{BOUNDS_SPINE, TABLE_SCAN};
 use gridwalk::{MAX_PAIRS, MAX_TRIANGLES, Shape};
+use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::gather::gathered_state;
 use gridwalk_core::grid::brick_resolution;
 use gridwalk_core::layout::{Bounds, BuildState, GridHeader, TileOccupancy};
 use gridwalk_core::twin::bounds_spine::bounds_spine;
-use gridwalk_core::twin::scan_spine::scan_spine;
+use gridwalk_core::twin::table_scan::table_scan;
 use gridwalk_tests::gpu::Gpu;
 use gridwalk_tests::random::Random;
 
@@ -18,20 +19,21 @@ fn devices() -> [&'static Gpu; 2] {
 }
 
 #[test]
-fn the_largest_scans() {
+fn the_largest_digit_table() {
     for gpu in devices() {
         let shape = gpu.tracer.shape();
-        let table_count = shape.table_entries(MAX_PAIRS) as u32;
-        let state = BuildState { offset_count: MAX_TRIANGLES + 1, table_count, ..BuildState::default() };
+        let (tiles, digit_bits) = (MAX_PAIRS.div_ceil(shape.sort_tile()), 3);
+        let mut random = Random::new(1);
+        let mut counts: Vec<u32> = (0..tiles << digit_bits).map(|_| random.below(10_000)).collect();
+        let mut sums = vec![0; 1 << digit_bits];
+        let state = BuildState { pair_count: MAX_PAIRS, digit_bits, ..BuildState::default() };
         let state_memory = gpu.upload("state", &[state]);
-        for (which, length) in [(0, state.offset_count), (1, state.table_count)] {
-            let mut random = Random::new(which.into());
-            let mut sums: Vec<u32> = (0..length.div_ceil(shape.scan_tile())).map(|_| random.below(10_000)).collect();
-            let partials = gpu.upload("partials", &sums);
-            gpu.launch(&SCAN_SPINE, 0, &[&state_memory, &partials, &state_memory], &[which], [1, 1, 1]);
-            scan_spine(&shape, length, &mut sums);
-            assert_same(&format!("{length} numbers, {shape:?}"), &partials.read::<u32>(0, sums.len()), &sums);
-        }
+        let (table, sums_memory) = (gpu.upload("table", &counts), gpu.guarded("sums", 4 << digit_bits));
+        let groups = split_workgroups(1 << digit_bits, shape.table_rows());
+        gpu.launch(&TABLE_SCAN, 0, &[&state_memory, &table, &sums_memory], &[0], groups);
+        table_scan(&shape, groups, &state, &mut counts, &mut sums, 0);
+        assert_same(&format!("{tiles} tiles, {shape:?}"), &table.read::<u32>(0, counts.len()), &counts);
+        assert_same(&format!("{tiles} tiles, {shape:?}: sums"), &sums_memory.read::<u32>(0, sums.len()), &sums);
     }
 }
 

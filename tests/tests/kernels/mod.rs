@@ -37,8 +37,8 @@ pub const ODD: Shape = Shape {
     by_component: false,
 };
 
-/// So small that a few hundred thousand elements fill more than 65,535 workgroups. The scan's tiles are larger, since its one-workgroup
-/// spine over 65,537 of them must stay within lavapipe's 65,535 turns of all loops.
+/// So small that a few hundred thousand elements fill more than 65,535 workgroups. The scan's tiles are larger: each adds the sums of all
+/// before it.
 pub const TINY: Shape = Shape {
     map_size: 4,
     scan_size: 8,

@@ -2,12 +2,13 @@ use gridwalk::Shape;
 use gridwalk::kernels::{OVERLAP_COUNT, OVERLAP_EMIT, OVERLAP_EMIT_LARGE};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::gather::gathered_state;
+use gridwalk_core::grid::{brick_resolution, cell_id, cell_of};
 use gridwalk_core::layout::{BuildState, GridHeader};
 use gridwalk_core::overlap::{SeparatingAxes, triangle_cells, triangle_overlaps_cell};
 use gridwalk_core::sort::writes_a;
 use gridwalk_core::twin::overlap_count::overlap_count;
 use gridwalk_core::twin::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
-use gridwalk_core::twin::scan_spine::exclusive_scan;
+use gridwalk_core::twin::pair_args::exclusive_scan;
 use gridwalk_tests::gpu::{CANARY, Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
 use gridwalk_tests::random::Random;
@@ -21,6 +22,7 @@ struct Counted {
     triangles: Vec<[f32; 4]>,
     offsets: Vec<u32>,
     boxes: Vec<[u32; 3]>,
+    used: Vec<u32>,
     state: BuildState,
 }
 
@@ -36,22 +38,25 @@ fn count(gpu: &Gpu, mesh: &Mesh, header: &GridHeader, exact: bool, what: &str) -
     let counts = gpu.guarded("counts", 4 * (u64::from(count) + 1));
     let device_boxes = gpu.guarded("boxes", 12 * u64::from(count.max(1)));
     let groups = split_workgroups(count + 1, shape.map_size);
-    gpu.launch(&OVERLAP_COUNT, exact.into(), &[&grid, &device_state, &moved, &counts, &device_boxes], &[], groups);
+    let mut used = vec![0; brick_resolution(header.resolution).iter().product::<u32>() as usize];
+    let device_used = gpu.upload("used", &used);
+    gpu.launch(&OVERLAP_COUNT, exact.into(), &[&grid, &device_state, &moved, &counts, &device_boxes, &device_used], &[], groups);
     let (mut offsets, mut boxes) = (untouched(count as usize + 1), vec![[CANARY; 3]; count.max(1) as usize]);
-    overlap_count(&shape, groups, exact, header, &mut state, &mut triangles, &mut offsets, &mut boxes);
+    overlap_count(&shape, groups, exact, header, &mut state, &mut triangles, &mut offsets, &mut boxes, &mut used);
+    assert_same(&format!("{what}: used bricks"), &device_used.read::<u32>(0, used.len()), &used);
     assert_same(&format!("{what}: counts"), &counts.read::<u32>(0, offsets.len()), &offsets);
     assert_same(&format!("{what}: boxes"), &device_boxes.read::<[u32; 3]>(0, boxes.len()), &boxes);
     assert_same(&format!("{what}: state"), &device_state.read::<BuildState>(0, 1), &[state]);
     let found: Vec<u32> = moved.read(0, 4 * triangles.len());
     assert_same(&format!("{what}: triangles"), &found, bytemuck::cast_slice(&triangles));
     exclusive_scan(&mut offsets, 0);
-    Counted { triangles, offsets, boxes, state }
+    Counted { triangles, offsets, boxes, used, state }
 }
 
 /// Emits on the device and compares, for a capacity of `part` of the pairs.
 fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f64, what: &str) {
     let shape = gpu.tracer.shape();
-    let Counted { triangles, offsets, boxes, state } = counted;
+    let Counted { triangles, offsets, boxes, used, state } = counted;
     let total = offsets[offsets.len() - 1];
     let pair_count = (f64::from(total) * part) as u32;
     let size = 4 * u64::from(pair_count.max(1));
@@ -66,11 +71,14 @@ fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f6
     let groups = split_workgroups(state.offset_count, shape.map_size);
     let runs = split_workgroups(pair_count.div_ceil(shape.emit_pairs), shape.map_size);
     gpu.launch(&OVERLAP_EMIT, 0, &memory, &[], groups);
-    gpu.launch(&OVERLAP_EMIT_LARGE, exact.into(), &memory, &[], runs);
+    let (mut used, device_used) = (used.clone(), gpu.upload("used", used));
+    let of_large: Vec<_> = memory.into_iter().chain([&device_used]).collect();
+    gpu.launch(&OVERLAP_EMIT_LARGE, exact.into(), &of_large, &[], runs);
     let count = pair_count as usize;
     let (mut keys, mut values) = (untouched(count), untouched(count));
     let (keys_of, values_of) = (&mut keys, &mut values);
-    let mut emission = Emission { grid: header, pair_count, offsets, boxes, triangles, keys: keys_of, values: values_of };
+    let used_of = &mut used;
+    let mut emission = Emission { grid: header, pair_count, offsets, boxes, triangles, keys: keys_of, values: values_of, used: used_of };
     overlap_emit(&shape, groups, &mut emission);
     overlap_emit_large(&shape, runs, exact, &mut emission);
     let (written, left) = if writes_a(pass_count, 0) { ([&a, &c], [&b, &d]) } else { ([&b, &d], [&a, &c]) };
@@ -78,6 +86,11 @@ fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f6
     assert!(!keys.contains(&CANARY), "{what}: a pair that no triangle wrote");
     assert_same(&format!("{what}: triangles of pairs"), &written[1].read::<u32>(0, count), &values);
     assert_same(&format!("{what}: keys"), &written[0].read::<u32>(0, count), &keys);
+    assert_same(&format!("{what}: used bricks"), &device_used.read::<u32>(0, used.len()), &used);
+    for key in keys.iter().filter(|key| **key != header.cell_count) {
+        let brick = cell_of(*key, header.resolution).map(|n| n / 4);
+        assert_eq!(used[cell_id(brick, brick_resolution(header.resolution)) as usize], 1, "{what}: the brick of a cell that is listed");
+    }
     for memory in left {
         assert_same(&format!("{what}: the other buffer"), &memory.read::<u32>(0, count), &untouched(count));
     }

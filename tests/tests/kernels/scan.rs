@@ -1,40 +1,35 @@
-use gridwalk::kernels::{SCAN_DOWNSWEEP, SCAN_REDUCE, SCAN_SPINE};
-use gridwalk::{Shape, split_workgroups};
-use gridwalk_core::layout::BuildState;
-use gridwalk_core::twin::scan_downsweep::scan_downsweep;
+use bytemuck::Zeroable;
+use gridwalk::kernels::{PAIR_ARGS, SCAN_REDUCE};
+use gridwalk::{Report, Shape, split_workgroups};
+use gridwalk_core::layout::{BuildState, DispatchArguments};
+use gridwalk_core::twin::pair_args::scan_tiles;
 use gridwalk_core::twin::scan_reduce::scan_reduce;
-use gridwalk_core::twin::scan_spine::scan_spine;
 use gridwalk_tests::gpu::Gpu;
 use gridwalk_tests::random::Random;
 
 use super::{TINY, assert_same, devices, many_groups, sizes};
 
-fn check(gpu: &Gpu, which: u32, numbers: &[u32], what: &str) {
+fn check(gpu: &Gpu, numbers: &[u32], what: &str) {
     let shape = gpu.tracer.shape();
     let length = numbers.len() as u32;
-    // The other length is a trap: no kernel may look at it.
-    let state = match which {
-        0 => BuildState { offset_count: length, table_count: 7, ..BuildState::default() },
-        _ => BuildState { offset_count: 7, table_count: length, ..BuildState::default() },
-    };
     let groups = gridwalk_core::dispatch::split_workgroups(length, shape.scan_tile());
     assert_eq!(groups, split_workgroups(length.div_ceil(shape.scan_tile())));
     let tiles = length.div_ceil(shape.scan_tile()) as usize;
-    let state = gpu.upload("state", &[state]);
+    let state = gpu.upload("state", &[BuildState { offset_count: length, ..BuildState::default() }]);
     let values = gpu.upload("values", numbers);
     let partials = gpu.guarded("partials", 4 * tiles as u64);
+    let arguments = gpu.upload("arguments", &[DispatchArguments::zeroed()]);
+    let report = gpu.upload("report", &[Report::zeroed()]);
 
     let mut expected = numbers.to_vec();
     let mut sums = vec![0; tiles];
-    gpu.launch(&SCAN_REDUCE, 0, &[&state, &values, &partials], &[which], groups);
+    gpu.launch(&SCAN_REDUCE, 0, &[&state, &values, &partials], &[], groups);
     scan_reduce(&shape, groups, length, &expected, &mut sums);
     assert_same(&format!("{what}: reduce"), &partials.read::<u32>(0, tiles), &sums);
-    gpu.launch(&SCAN_SPINE, 0, &[&state, &partials, &state], &[which], [1, 1, 1]);
-    scan_spine(&shape, length, &mut sums);
-    assert_same(&format!("{what}: spine"), &partials.read::<u32>(0, tiles), &sums);
-    gpu.launch(&SCAN_DOWNSWEEP, 0, &[&state, &partials, &values], &[which], groups);
-    scan_downsweep(&shape, groups, length, &sums, &mut expected);
-    assert_same(&format!("{what}: downsweep"), &values.read::<u32>(0, numbers.len()), &expected);
+    gpu.launch(&PAIR_ARGS, 0, &[&state, &partials, &values, &arguments, &report], &[u32::MAX, 0], groups);
+    let sum = scan_tiles(&shape, groups, length, &sums, &mut expected);
+    assert_same(&format!("{what}: tiles"), &values.read::<u32>(0, numbers.len()), &expected);
+    assert_eq!(report.read::<Report>(0, 1)[0].pair_total, sum, "{what}: the sum of all");
 
     let total = numbers.iter().scan(0u64, |sum, value| {
         let before = *sum;
@@ -55,7 +50,7 @@ fn scan_of_every_size() {
         let shape = gpu.tracer.shape();
         for size in sizes(shape.scan_tile()) {
             let seed = u64::from(size);
-            check(gpu, size % 2, &numbers(size, 1000, seed), &format!("{size} numbers, {shape:?}, seed {seed}"));
+            check(gpu, &numbers(size, 1000, seed), &format!("{size} numbers, {shape:?}, seed {seed}"));
         }
     }
 }
@@ -67,11 +62,11 @@ fn scan_saturates() {
             let size = 10_000;
             // The sum passes 2^32 somewhere in the middle, within a tile, between tiles, or at once.
             let limit = [1 << 20, 1 << 21, 1 << 31, u32::MAX][seed as usize];
-            check(gpu, 0, &numbers(size, limit, seed), &format!("numbers below {limit}, seed {seed}, {:?}", gpu.tracer.shape()));
+            check(gpu, &numbers(size, limit, seed), &format!("numbers below {limit}, seed {seed}, {:?}", gpu.tracer.shape()));
         }
         let mut edge = numbers(5000, 1, 0);
         (edge[17], edge[4000], edge[4001]) = (u32::MAX - 1, 1, 1);
-        check(gpu, 1, &edge, "a sum that just reaches the largest number");
+        check(gpu, &edge, "a sum that just reaches the largest number");
     }
 }
 
@@ -79,13 +74,13 @@ fn scan_saturates() {
 fn scan_of_many_workgroups() {
     let gpu = Gpu::with_shape(TINY);
     for size in many_groups(TINY.scan_tile()) {
-        check(gpu, 0, &numbers(size, 100, 5), &format!("{size} numbers"));
+        check(gpu, &numbers(size, 100, 5), &format!("{size} numbers"));
     }
 }
 
 #[test]
 fn scan_of_millions() {
     for (size, shape) in [((1 << 20) - 1, Shape::CPU), ((1 << 20) + 1, Shape::GPU), (5_000_011, Shape::CPU)] {
-        check(Gpu::with_shape(shape), 1, &numbers(size, 800, 6), &format!("{size} numbers, {shape:?}"));
+        check(Gpu::with_shape(shape), &numbers(size, 800, 6), &format!("{size} numbers, {shape:?}"));
     }
 }

@@ -1,10 +1,11 @@
 use gridwalk::Shape;
-use gridwalk::kernels::{SCAN_DOWNSWEEP, SCAN_REDUCE, SCAN_SPINE, SORT_HISTOGRAM, SORT_SCATTER};
+use gridwalk::kernels::{SORT_HISTOGRAM, SORT_SCATTER, TABLE_SCAN};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::layout::BuildState;
 use gridwalk_core::sort::{passes_of, writes_a};
 use gridwalk_core::twin::sort_histogram::sort_histogram;
 use gridwalk_core::twin::sort_scatter::{Pairs, sort_scatter};
+use gridwalk_core::twin::table_scan::table_scan;
 use gridwalk_tests::gpu::{CANARY, Gpu};
 use gridwalk_tests::random::Random;
 
@@ -21,19 +22,11 @@ fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
     let (pass_count, digit_bits) = passes_of(key_bits, shape.sort_bits);
     let table_count = tiles << digit_bits;
     let kept_count = keys.iter().filter(|key| **key != SENTINEL).count() as u32;
-    let mut state = BuildState {
-        pair_count: count,
-        kept_count: count,
-        key_bits,
-        pass_count,
-        digit_bits,
-        table_count,
-        sentinel: SENTINEL,
-        ..BuildState::default()
-    };
+    let mut state =
+        BuildState { pair_count: count, kept_count: count, key_bits, pass_count, digit_bits, sentinel: SENTINEL, ..BuildState::default() };
     let device_state = gpu.upload("state", &[state]);
     let table = gpu.guarded("table", 4 * u64::from(table_count));
-    let partials = gpu.guarded("partials", 4 * u64::from(table_count.div_ceil(shape.scan_tile())));
+    let sums = gpu.guarded("sums", 4 << digit_bits);
     let places: Vec<u32> = (0..count).collect();
     let empty = vec![CANARY; keys.len()];
     let in_a = writes_a(pass_count, 0);
@@ -43,23 +36,23 @@ fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
     });
     let (mut from, mut to) = ((keys.to_vec(), places), (empty.clone(), empty.clone()));
     let mut expected = vec![CANARY; table_count as usize];
+    let mut expected_sums = vec![CANARY; 1 << digit_bits];
     for pass in 0..pass_count {
         let groups = split_workgroups(tiles, shape.sort_tiles());
-        let scan_groups = split_workgroups(table_count, shape.scan_tile());
+        let scan_groups = split_workgroups(1 << digit_bits, shape.table_rows());
         gpu.launch(&SORT_HISTOGRAM, 0, &[&device_state, &keys_a, &keys_b, &table], &[pass], groups);
         sort_histogram(&shape, groups, &state, &from.0, &mut expected, pass);
         assert_same(&format!("{what}: histogram of pass {pass}"), &table.read::<u32>(0, expected.len()), &expected);
-        let which = if pass == 0 { 2 } else { 1 };
-        gpu.launch(&SCAN_REDUCE, 0, &[&device_state, &table, &partials], &[which], scan_groups);
-        gpu.launch(&SCAN_SPINE, 0, &[&device_state, &partials, &device_state], &[which], [1, 1, 1]);
-        gpu.launch(&SCAN_DOWNSWEEP, 0, &[&device_state, &partials, &table], &[which], scan_groups);
-        let memory = [&device_state, &keys_a, &keys_b, &values_a, &values_b, &table];
+        gpu.launch(&TABLE_SCAN, 0, &[&device_state, &table, &sums], &[pass], scan_groups);
+        table_scan(&shape, scan_groups, &state, &mut expected, &mut expected_sums, pass);
+        assert_same(&format!("{what}: table of pass {pass}"), &table.read::<u32>(0, expected.len()), &expected);
+        assert_same(&format!("{what}: sums of pass {pass}"), &sums.read::<u32>(0, expected_sums.len()), &expected_sums);
+        let memory = [&device_state, &keys_a, &keys_b, &values_a, &values_b, &table, &sums, &device_state];
         gpu.launch(&SORT_SCATTER, 0, &memory, &[pass], groups);
-        expected = table.read::<u32>(0, expected.len());
         let pairs = Pairs { keys: from.0.as_slice(), values: from.1.as_slice() };
-        sort_scatter(&shape, groups, &state, &pairs, &mut to.0, &mut to.1, &expected, pass);
+        sort_scatter(&shape, groups, &mut state, &pairs, &mut to.0, &mut to.1, &expected, &expected_sums, pass);
         if pass == 0 {
-            state.kept_count = device_state.read::<BuildState>(0, 1)[0].kept_count;
+            assert_eq!(device_state.read::<BuildState>(0, 1)[0].kept_count, kept_count, "{what}");
             assert_eq!(state.kept_count, kept_count, "{what}");
         }
         let (found_keys, found_values) = if writes_a(pass_count, pass + 1) { (&keys_a, &values_a) } else { (&keys_b, &values_b) };

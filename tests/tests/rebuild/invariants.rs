@@ -189,7 +189,7 @@ fn check_bricks(gpu: &Gpu, built: &Built, cells: &[[u32; 2]]) -> Result<(), Stri
     let mut bricks = vec![Brick::default(); len];
     let mut partials = vec![TileOccupancy::default(); len];
     let (mut x, mut y) = (vec![0; len], vec![0; len]);
-    brick_reduce(&shape, split_workgroups(count, shape.brick_tile()), &header, cells, &mut bricks, &mut partials);
+    brick_reduce(&shape, split_workgroups(count, shape.brick_tile()), &header, &vec![1; len], cells, &mut bricks, &mut partials);
     brick_distance_x(&shape, groups, resolution, &bricks, &mut x);
     brick_distance_y(&shape, groups, resolution, &x, &mut y);
     brick_distance_z(&shape, groups, resolution, &y, &mut bricks);

@@ -45,15 +45,13 @@ impl Size {
         let of_leaves = u64::from(launches.saturating_sub(passes)) * leaf_pairs;
         Some(match kernel {
             "gather" => triangles * (INDICES + VERTICES + TRIANGLE),
-            "clear_cells" => cells * CELL,
             "overlap_count" => triangles * (2 * TRIANGLE + 4 * WORD),
             "overlap_emit" => triangles * 4 * WORD + pairs * 2 * WORD,
             "scan_reduce" => triangles * WORD,
-            "scan_downsweep" => triangles * 2 * WORD,
+            "pair_args" => triangles * 2 * WORD,
             "sort_histogram" => (written + later * pairs + of_leaves) * WORD,
             "sort_scatter" => (written + pairs + later * 2 * pairs + 2 * of_leaves) * 2 * WORD,
             "cell_ranges" => (pairs + leaf_pairs) * WORD + (cells_in_use + leaf_cells) * CELL,
-            "brick_reduce" => cells * CELL + bricks * BRICK,
             "brick_distance_x" | "brick_distance_z" => bricks * (BRICK + WORD),
             "brick_distance_y" => bricks * 2 * WORD,
             _ => return None,

@@ -26,10 +26,10 @@ pub(super) fn cells_of_brick(resolution: [u32; 3], index: u32) -> impl Iterator<
     (0..64).map(move |bit| (bit, cell(bit))).filter(move |(_, cell)| inside(cell))
 }
 
-fn brick(grid: &GridHeader, index: u32, cells: &[[u32; 2]]) -> (Brick, TileOccupancy) {
+fn brick(grid: &GridHeader, index: u32, used: bool, cells: &[[u32; 2]]) -> (Brick, TileOccupancy) {
     let mut mask = 0u64;
     let mut occupancy = TileOccupancy::default();
-    for (bit, cell) in cells_of_brick(grid.resolution, index) {
+    for (bit, cell) in cells_of_brick(grid.resolution, index).filter(|_| used) {
         let [begin, end] = cells[cell_id(cell, grid.resolution) as usize];
         let length = end - begin;
         mask |= u64::from(end != 0) << bit;
@@ -45,11 +45,12 @@ fn brick(grid: &GridHeader, index: u32, cells: &[[u32; 2]]) -> (Brick, TileOccup
     (Brick { mask: [mask as u32, (mask >> 32) as u32], longest_list, ..Brick::default() }, occupancy)
 }
 
-/// Which cells of each brick are in use; what each tile of bricks adds to the report and gives the second level to do.
+/// Which cells of each brick are in use, of those bricks that triangles may lie in; what each tile of bricks adds to the report and gives the second level to do.
 pub fn brick_reduce(
     shape: &Shape,
     groups: [u32; 3],
     grid: &GridHeader,
+    used: &[u32],
     cells: &[[u32; 2]],
     bricks: &mut [Brick],
     partials: &mut [TileOccupancy],
@@ -62,7 +63,7 @@ pub fn brick_reduce(
         }
         partials[tile as usize] = (first..count.min(first + shape.brick_tile())).fold(TileOccupancy::default(), |sum, index| {
             let occupancy;
-            (bricks[index as usize], occupancy) = brick(grid, index, cells);
+            (bricks[index as usize], occupancy) = brick(grid, index, used[index as usize] != 0, cells);
             unite(sum, occupancy)
         });
     }

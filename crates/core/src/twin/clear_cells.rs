@@ -1,15 +1,15 @@
 //! Twin of kernel `clear_cells`.
 
-use crate::dispatch::workgroups;
+use super::brick_reduce::cells_of_brick;
+use crate::grid::{BRICK_SIZE, brick_resolution, cell_id};
 use crate::shape::Shape;
 
-/// Cells that an invocation clears.
-pub const CELLS_EACH: u32 = 8;
-
-/// Empties the cells in use, and those up to the next multiple of eight.
-pub fn clear_cells(shape: &Shape, groups: [u32; 3], cell_count: u32, cells: &mut [[u32; 2]]) {
-    let invocations = workgroups(groups).flat_map(|group| group * shape.map_size..(group + 1) * shape.map_size);
-    for first in invocations.map(|invocation| invocation * CELLS_EACH).filter(|first| *first < cell_count) {
-        cells[first as usize..(first + CELLS_EACH) as usize].fill([0, 0]);
+/// Empties the cells of the bricks that triangles may lie in.
+pub fn clear_cells(shape: &Shape, groups: [u32; 3], resolution: [u32; 3], used: &[u32], cells: &mut [[u32; 2]]) {
+    let slices = (groups[0] * groups[1] * shape.map_size).min(BRICK_SIZE * brick_resolution(resolution).iter().product::<u32>());
+    for index in (0..slices / BRICK_SIZE).filter(|index| used[*index as usize] != 0) {
+        for (_, cell) in cells_of_brick(resolution, index) {
+            cells[cell_id(cell, resolution) as usize] = [0, 0];
+        }
     }
 }

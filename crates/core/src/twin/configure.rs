@@ -3,10 +3,9 @@
 //! Integers that follow from the resolution are the kernel's on every device; the resolution and the sizes of cells come out of divisions,
 //! which a GPU rounds by up to 2.5 ulp. So later twins take the device's header, and [`configure_state`] is a function of it.
 
-use super::clear_cells::CELLS_EACH;
 use super::pair_args::four;
 use crate::dispatch::split_workgroups;
-use crate::grid::brick_resolution;
+use crate::grid::{BRICK_SIZE, brick_resolution};
 use crate::layout::{Bounds, BuildState, DispatchArguments, GridHeader, OVERFLOW_CELLS, Report};
 use crate::shape::Shape;
 use crate::sort::passes_of;
@@ -185,10 +184,10 @@ pub fn configure_state(
     let sentinel = if info.exact { header.cell_count } else { u32::MAX };
     let (pass_count, digit_bits) = passes_of(key_bits, shape.sort_bits);
     *state = BuildState { key_bits, pass_count, digit_bits, sentinel, overflow, ..*state };
-    arguments.clear_cells = four(split_workgroups(header.cell_count.div_ceil(CELLS_EACH), shape.map_size));
-    let bricks = brick_resolution(header.resolution).iter().product();
+    let bricks: u32 = brick_resolution(header.resolution).iter().product();
     arguments.brick_reduce = four(split_workgroups(bricks, shape.brick_tile()));
-    arguments.brick_distance = four(split_workgroups(bricks, shape.map_size));
+    arguments.bricks = four(split_workgroups(bricks, shape.map_size));
+    arguments.clear_cells = four(split_workgroups(BRICK_SIZE * bricks, shape.map_size));
     let empty = scene.dropped == info.triangle_count;
     *report = Report {
         triangles: info.triangle_count,

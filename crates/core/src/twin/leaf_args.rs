@@ -1,29 +1,30 @@
 //! Twin of kernel `leaf_args`.
 
-use super::pair_args::{four, pass_groups};
+use super::pair_args::{four, pass_groups, scan_tiles};
 use crate::dispatch::split_workgroups;
 use crate::layout::{BuildState, LeafArguments, OVERFLOW_LEAVES, OVERFLOW_PAIRS, Report};
 use crate::shape::Shape;
 
-/// Turns the number of the second level's pairs into the sizes of the steps that follow. If they do not fit, no cell is split.
+/// Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no cell is split.
+#[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn leaf_args(
     shape: &Shape,
+    groups: [u32; 3],
     state: &mut BuildState,
-    offsets: &[u32],
+    partials: &[u32],
+    offsets: &mut [u32],
     arguments: &mut LeafArguments,
     report: &mut Report,
     pair_capacity: u32,
     pass_capacity: u32,
 ) {
-    let references = state.offset_count - 1;
-    let total = if references > 0 { offsets[references as usize] } else { 0 };
+    let sum = scan_tiles(shape, groups, state.offset_count, partials, offsets);
+    let total = if state.split_cells > 0 { sum } else { 0 };
     let fits = total <= pair_capacity - state.first_pair;
     let count = if fits { total } else { 0 };
-    let tiles = count.div_ceil(shape.sort_tile());
     state.pair_total = total;
     state.pair_count = count;
     state.kept_count = count;
-    state.table_count = tiles << state.digit_bits;
     if !fits {
         if report.overflow & OVERFLOW_PAIRS == 0 {
             report.pair_total = report.pair_total.max(state.first_pair.saturating_add(total));
@@ -36,6 +37,6 @@ pub fn leaf_args(
     arguments.distance = if count > 0 { four(split_workgroups(state.split_cells, shape.measured_cells())) } else { [0; 4] };
     for pass in 0..pass_capacity {
         let at = pass as usize;
-        [arguments.sort[at], arguments.table_scan[at], arguments.table_spine[at]] = pass_groups(shape, state, pass);
+        [arguments.sort[at], arguments.table_scan[at]] = pass_groups(shape, state, pass);
     }
 }

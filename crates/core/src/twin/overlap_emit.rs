@@ -1,6 +1,6 @@
 //! Twins of kernels `overlap_emit` and `overlap_emit_large`.
 
-use crate::grid::cell_id;
+use crate::grid::{BRICK_SIZE, brick_resolution, cell_id};
 use crate::layout::GridHeader;
 use crate::overlap::{CellBox, SeparatingAxes, triangle_cells};
 use crate::shape::Shape;
@@ -23,6 +23,8 @@ pub struct Emission<'a> {
     pub keys: &'a mut [u32],
     /// Triangles.
     pub values: &'a mut [u32],
+    /// A word a brick: 1 if a triangle may lie in it; of those with large boxes.
+    pub used: &'a mut [u32],
 }
 
 impl Emission<'_> {
@@ -67,6 +69,8 @@ pub fn overlap_emit_large(shape: &Shape, groups: [u32; 3], exact: bool, emission
             let overlaps = !test || axes.meets(cell);
             emission.keys[pair as usize] = if overlaps { cell_id(cell, emission.grid.resolution) } else { emission.grid.cell_count };
             emission.values[pair as usize] = 3 * triangle as u32;
+            let brick = cell.map(|n| n / BRICK_SIZE);
+            emission.used[cell_id(brick, brick_resolution(emission.grid.resolution)) as usize] = 1;
         }
     }
 }

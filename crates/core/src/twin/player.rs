@@ -8,7 +8,8 @@ use super::brick_distance_y::brick_distance_y;
 use super::brick_distance_z::brick_distance_z;
 use super::brick_reduce::brick_reduce;
 use super::cell_ranges::cell_ranges;
-use super::clear_cells::{CELLS_EACH, clear_cells};
+use super::clear_bricks::clear_bricks;
+use super::clear_cells::clear_cells;
 use super::configure::{Configure, configure_header, configure_state};
 use super::gather::gather;
 use super::gather_records::gather_records;
@@ -20,20 +21,16 @@ use super::overlap_count::overlap_count;
 use super::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
 use super::pair_args::pair_args;
 use super::report_spine::report_spine;
-use super::scan_downsweep::scan_downsweep;
 use super::scan_reduce::scan_reduce;
-use super::scan_spine::scan_spine;
 use super::sort_histogram::sort_histogram;
 use super::sort_scatter::{Pairs, sort_scatter};
 use super::split_cells::split_cells;
+use super::table_scan::table_scan;
 use crate::geometry::{AddressedMemory, GeometryRecord};
 use crate::layout::{Bounds, Brick, BuildState, DispatchArguments, GridHeader, LeafArguments, Report, SplitCell, TileOccupancy};
 use crate::shape::Shape;
 use crate::sort::writes_a;
 use crate::split::LEAST_SPLIT;
-
-/// Which scan leaves its sum as the number of pairs that are kept.
-const SCAN_FIRST_TABLE: u32 = 2;
 
 /// Which of the two states a step takes its numbers from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,7 +133,7 @@ impl Memory {
             records: Vec::new(),
             addressed: AddressedMemory::default(),
             header: filled(word),
-            cells: vec![[word; 2]; (cells.next_multiple_of(CELLS_EACH) + leaf_cells) as usize],
+            cells: vec![[word; 2]; (cells + leaf_cells) as usize],
             references: vec![word; pairs],
             triangles: vec![filled(word); 3 * triangles.max(1) as usize],
             bricks: vec![filled(word); bricks as usize],
@@ -147,7 +144,7 @@ impl Memory {
             bounds_partials: vec![filled(word); shape.bounds_tiles(triangles) as usize],
             offsets: vec![word; offsets],
             cell_boxes: vec![[word; 3]; triangles.max(1) as usize],
-            scan_partials: vec![word; offsets.max(table).max(pairs + 1).div_ceil(shape.scan_tile() as usize)],
+            scan_partials: vec![word; shape.scan_partials(triangles, pairs as u32) as usize],
             keys_a: vec![word; pairs + 1],
             keys_b: vec![word; pairs],
             values_a: vec![word; pairs],
@@ -182,7 +179,7 @@ impl Memory {
             return Ok(());
         }
         let words = step.words;
-        let GridHeader { cell_count, resolution, .. } = self.header;
+        let GridHeader { resolution, .. } = self.header;
         let BuildState { triangle_count, pair_count, .. } = self.state;
         match step.kernel {
             "gather" => {
@@ -212,33 +209,29 @@ impl Memory {
                 let (scene, state, arguments, report) = (&self.scene_bounds, &mut self.state, &mut self.arguments, &mut self.report);
                 configure_state(shape, &info, scene, &header, density, overflow, state, arguments, report);
             }
-            "clear_cells" => clear_cells(shape, groups, cell_count, &mut self.cells),
+            "clear_bricks" => clear_bricks(shape, groups, resolution, &mut self.distances_x),
+            "clear_cells" => clear_cells(shape, groups, resolution, &self.distances_x, &mut self.cells),
             "overlap_count" => {
                 let (triangles, counts, boxes) = (&mut self.triangles, &mut self.offsets, &mut self.cell_boxes);
-                overlap_count(shape, groups, step.exact, &self.header, &mut self.state, triangles, counts, boxes);
+                let used = &mut self.distances_x;
+                overlap_count(shape, groups, step.exact, &self.header, &mut self.state, triangles, counts, boxes, used);
             }
-            "scan_reduce" | "scan_spine" | "scan_downsweep" => {
-                let state = level_state(step.level, &mut self.state, &mut self.leaf_state);
-                let (length, values) = match (words[0], step.level) {
-                    (0, Level::First) => (state.offset_count, &mut self.offsets),
-                    (0, Level::Second) => (state.offset_count, &mut self.keys_a),
-                    _ => (state.table_count, &mut self.table),
+            "scan_reduce" => {
+                let values = match step.level {
+                    Level::First => &self.offsets,
+                    Level::Second => &self.keys_a,
                 };
-                let partials = &mut self.scan_partials;
-                match step.kernel {
-                    "scan_reduce" => scan_reduce(shape, groups, length, values, partials),
-                    "scan_spine" => {
-                        let sum = scan_spine(shape, length, partials);
-                        if words[0] == SCAN_FIRST_TABLE {
-                            state.kept_count = sum;
-                        }
-                    }
-                    _ => scan_downsweep(shape, groups, length, partials, values),
-                }
+                let length = level_state(step.level, &mut self.state, &mut self.leaf_state).offset_count;
+                scan_reduce(shape, groups, length, values, &mut self.scan_partials);
             }
             "pair_args" => {
                 let (state, arguments, report) = (&mut self.state, &mut self.arguments, &mut self.report);
-                pair_args(shape, state, &self.offsets, arguments, report, words[0], words[1]);
+                let (partials, offsets) = (&self.scan_partials, &mut self.offsets);
+                pair_args(shape, groups, state, partials, offsets, arguments, report, words[0], words[1]);
+            }
+            "table_scan" => {
+                let state = *level_state(step.level, &mut self.state, &mut self.leaf_state);
+                table_scan(shape, groups, &state, &mut self.table, &mut self.scan_partials, words[0]);
             }
             "overlap_emit" | "overlap_emit_large" => {
                 let (keys, values) = match writes_a(self.state.pass_count, 0) {
@@ -247,7 +240,8 @@ impl Memory {
                 };
                 let offsets = &self.offsets[..self.state.offset_count as usize];
                 let (grid, boxes, triangles) = (&self.header, &self.cell_boxes, &self.triangles);
-                let mut emission = Emission { grid, pair_count, offsets, boxes, triangles, keys, values };
+                let used = &mut self.distances_x;
+                let mut emission = Emission { grid, pair_count, offsets, boxes, triangles, keys, values, used };
                 match step.kernel {
                     "overlap_emit" => overlap_emit(shape, groups, &mut emission),
                     _ => overlap_emit_large(shape, groups, step.exact, &mut emission),
@@ -261,16 +255,18 @@ impl Memory {
             "sort_scatter" => {
                 let a = (&mut self.keys_a, &mut self.values_a);
                 let b = (&mut self.keys_b, &mut self.references);
-                let state = *level_state(step.level, &mut self.state, &mut self.leaf_state);
+                let state = level_state(step.level, &mut self.state, &mut self.leaf_state);
                 let (from, to) = if writes_a(state.pass_count, words[0]) { (a, b) } else { (b, a) };
                 let pairs = Pairs { keys: from.0.as_slice(), values: from.1.as_slice() };
-                sort_scatter(shape, groups, &state, &pairs, to.0, to.1, &self.table, words[0]);
+                sort_scatter(shape, groups, state, &pairs, to.0, to.1, &self.table, &self.scan_partials, words[0]);
             }
             "cell_ranges" => {
                 let state = *level_state(step.level, &mut self.state, &mut self.leaf_state);
                 cell_ranges(shape, groups, &state, &self.keys_b, &mut self.cells, &mut self.report);
             }
-            "brick_reduce" => brick_reduce(shape, groups, &self.header, &self.cells, &mut self.bricks, &mut self.occupancy),
+            "brick_reduce" => {
+                brick_reduce(shape, groups, &self.header, &self.distances_x, &self.cells, &mut self.bricks, &mut self.occupancy)
+            }
             "report_spine" => {
                 let (leaf_state, arguments) = (&mut self.leaf_state, &mut self.leaf_arguments);
                 let (partials, report) = (&mut self.occupancy, &mut self.report);
@@ -278,11 +274,13 @@ impl Memory {
             }
             "split_cells" => {
                 let least = self.leaf_state.least_split;
-                split_cells(shape, groups, &self.header, least, &self.cells, &self.occupancy, &mut self.split_cells, words[0]);
+                let (cells, bricks, partials) = (&self.cells, &self.bricks, &self.occupancy);
+                split_cells(shape, groups, &self.header, least, cells, bricks, partials, &mut self.split_cells, words[0]);
             }
             "leaf_args" => {
                 let (state, arguments, report) = (&mut self.leaf_state, &mut self.leaf_arguments, &mut self.report);
-                leaf_args(shape, state, &self.keys_a, arguments, report, words[0], words[1]);
+                let (partials, offsets) = (&self.scan_partials, &mut self.keys_a);
+                leaf_args(shape, groups, state, partials, offsets, arguments, report, words[0], words[1]);
             }
             "leaf_count" | "leaf_emit" => {
                 let leaves = Leaves {

@@ -60,5 +60,5 @@ pub fn report_spine(
     arguments.split_cells = groups(split_workgroups(count, 1));
     arguments.count = groups(split_workgroups(counts, shape.map_size));
     arguments.offsets_scan = groups(split_workgroups(counts, shape.scan_tile()));
-    arguments.offsets_spine = groups([1, 1, 1]);
+    arguments.args = if split_cells > 0 { arguments.offsets_scan } else { four([1, 1, 1]) };
 }

@@ -3,7 +3,7 @@
 use super::brick_reduce::cells_of_brick;
 use crate::dispatch::workgroups;
 use crate::grid::{brick_resolution, cell_id};
-use crate::layout::{GridHeader, SplitCell, TileOccupancy};
+use crate::layout::{Brick, GridHeader, SplitCell, TileOccupancy};
 use crate::shape::Shape;
 use crate::split::{LEAST_SPLIT, leaf_count_of, leaf_level};
 
@@ -15,6 +15,7 @@ pub fn split_cells(
     grid: &GridHeader,
     least: u32,
     cells: &[[u32; 2]],
+    bricks: &[Brick],
     partials: &[TileOccupancy],
     records: &mut [SplitCell],
     leaf_capacity: u32,
@@ -27,7 +28,9 @@ pub fn split_cells(
         }
         let TileOccupancy { cells_before: mut record, references_before: mut first_reference, leaves_before: mut leaf_begin, .. } =
             partials[tile as usize];
-        for (_, cell) in (first..count.min(first + shape.brick_tile())).flat_map(|index| cells_of_brick(grid.resolution, index)) {
+        let tile = first..count.min(first + shape.brick_tile());
+        let long_bricks = tile.filter(|index| bricks[*index as usize].longest_list >= least);
+        for (_, cell) in long_bricks.flat_map(|index| cells_of_brick(grid.resolution, index)) {
             let id = cell_id(cell, grid.resolution);
             let [list_begin, end] = cells[id as usize];
             let list_length = end - list_begin;

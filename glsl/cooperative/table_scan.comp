@@ -1,0 +1,71 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
+// The exclusive scan of each row of the digit table in place: how many keys with the digit the tiles before have; and the sum of each row. A row
+// is an invocation's where a tile of the sort is, and otherwise a workgroup's.
+
+#include "shared/scan.glsl"
+
+layout(constant_id = 1) const uint SORT_TILE = 8192;
+layout(constant_id = 2) const bool SORT_ALONE = false;
+
+layout(push_constant, std430) uniform TableScan {
+    StateIn state;
+    UintsInOut table;
+    UintsOut sums;
+    uint pass;
+};
+
+// Of an invocation in a turn, one after another.
+const uint ENTRIES_EACH = 8u;
+
+// Of at most 2^28 pairs: 32,768 turns by tiles of 8,192.
+void scan_alone(uint row, uint tile_count) {
+    if (row >> state.state.digit_bits != 0u) {
+        return;
+    }
+    uint sum = 0u;
+    for (uint i = row * tile_count; i < (row + 1u) * tile_count; ++i) {
+        uint count = table.word[i];
+        table.word[i] = sum;
+        sum += count;
+    }
+    sums.word[row] = sum;
+}
+
+void scan_together(uint row, uint tile_count) {
+    bool used = row >> state.state.digit_bits == 0u;
+    uint end = used ? tile_count : 0u;
+    uint begin = row * tile_count;
+    uint sum = 0u;
+    for (uint turn = 0u; turn < end; turn += gl_WorkGroupSize.x * ENTRIES_EACH) {
+        uint first = min(turn + gl_LocalInvocationID.x * ENTRIES_EACH, end);
+        uint last = min(first + ENTRIES_EACH, end);
+        uint mine = 0u;
+        for (uint i = first; i < last; ++i) {
+            mine += table.word[begin + i];
+        }
+        uint total;
+        uint before = sum + workgroup_exclusive_scan(mine, total);
+        for (uint i = first; i < last; ++i) {
+            uint count = table.word[begin + i];
+            table.word[begin + i] = before;
+            before += count;
+        }
+        sum += total;
+    }
+    if (used && gl_LocalInvocationID.x == 0u) {
+        sums.word[row] = sum;
+    }
+}
+
+void main() {
+    uint tile_count = (pairs_of(state, pass) + SORT_TILE - 1u) / SORT_TILE;
+    if (SORT_ALONE) {
+        scan_alone(invocation_index(), tile_count);
+    } else {
+        scan_together(workgroup_index(), tile_count);
+    }
+}
