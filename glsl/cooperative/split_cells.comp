@@ -3,11 +3,13 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// Writes a record of each cell that is to be split: where its references and its leaf cells begin among those of all split cells.
+// Writes a record of each cell that is to be split: where its references and its leaf cells begin among those of all split cells; and of
+// which the first reference of each block is.
 
 #include "shared/occupancy.glsl"
 
 layout(constant_id = 1) const uint BRICKS_EACH = 4;
+layout(constant_id = 2) const uint OWNER_SHIFT = 5;
 
 layout(push_constant, std430) uniform SplitCells {
     GridwalkGrid grid;
@@ -16,6 +18,7 @@ layout(push_constant, std430) uniform SplitCells {
     Bricks bricks;
     OccupancyIn partials;
     SplitCellsOut split_cells;
+    UintsOut owners; // of the first reference of each block
     uint leaf_capacity;
 };
 
@@ -54,6 +57,7 @@ void main() {
             }
         }
     }
+    uint shift = owner_shift(OWNER_SHIFT, state.state.offset_count - 1u);
     uint total;
     uint record = occupancy.cells_before + workgroup_exclusive_scan(records, total);
     uint reference = occupancy.references_before + workgroup_exclusive_scan(references, total);
@@ -76,6 +80,10 @@ void main() {
                         uint fitting = end <= leaf_capacity ? level : 0u;
                         uint xy = (cell.x + x) | cell.y << 16u;
                         split_cells.cell[record] = SplitCell(reference, range.x, length, leaf, row + x, fitting, xy, cell.z);
+                        // At most 2^14 turns for all.
+                        for (uint block = (reference + (1u << shift) - 1u) >> shift; block << shift < reference + length; ++block) {
+                            owners.word[block] = record;
+                        }
                         record += 1u;
                         reference += length;
                         leaf = end;

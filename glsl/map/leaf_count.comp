@@ -18,7 +18,8 @@ layout(push_constant, std430) uniform LeafCount {
     Triangles triangles;
     UintsOut counts;
     UintsOut masks;
-    UintsOut owners; // the split cell of each triangle
+    UintsOut boxes;
+    UintsIn owners;
     CellsOut cells;
 };
 
@@ -32,9 +33,7 @@ void main() {
         counts.word[index] = 0u;
         return;
     }
-    uint owner = split_cell_of(split_cells, state.state.split_cells, index);
-    owners.word[index] = owner;
-    SplitCell split = split_cells.cell[owner];
+    SplitCell split = split_cells.cell[split_cell_of(split_cells, owners, state, index)];
     uint place = index - split.first_reference;
     // Few turns: there are at most 32 leaf cells for each triangle of a list.
     uint leaves = split.level == 0u ? 0u : leaf_count_of(split.level);
@@ -64,4 +63,5 @@ void main() {
     }
     counts.word[index] = count;
     masks.word[index] = box.count > SMALL_BOX ? 0u : mask;
+    boxes.word[index] = leaf_box_word(box, split.level);
 }

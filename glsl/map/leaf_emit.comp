@@ -18,8 +18,9 @@ layout(push_constant, std430) uniform LeafEmit {
     Triangles triangles;
     UintsIn offsets;
     UintsIn masks;
+    UintsIn boxes;
     UintsIn owners;
-    // Written behind what the first level has there, and offsets, masks and owners.
+    // Written behind what the first level has there, and offsets, masks and boxes.
     UintsOut keys_a;
     UintsOut keys_b;
     UintsOut values_a;
@@ -32,40 +33,56 @@ void main() {
     if (index + 1u >= state.state.offset_count) {
         return;
     }
-    SplitCell split = split_cells.cell[owners.word[index]];
-    if (split.level == 0u) {
-        return;
-    }
-    uint place = index - split.first_reference;
+    uint owner = split_cell_of(split_cells, owners, state, index);
+    uint place = index - split_cells.cell[owner].first_reference;
+    uint box_word = boxes.word[index];
+    uint mask = masks.word[index];
     if (place == 0u) {
-        cells.range[split.cell] = uvec2(state.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level);
+        SplitCell split = split_cells.cell[owner];
+        if (split.level != 0u) {
+            cells.range[split.cell] = uvec2(state.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level);
+        }
+    }
+    if (mask == 0u && box_word != LARGE_LEAF_BOX) {
+        return;
     }
     bool to_a = writes_a(state.state.pass_count, 0u);
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
-    uint vertex = references.vertex[split.list_begin + place];
-    vec3 v0 = triangles.vertex[vertex].xyz;
-    vec3 v1 = triangles.vertex[vertex + 1u].xyz;
-    vec3 v2 = triangles.vertex[vertex + 2u].xyz;
-    GridHeader fine = refined(grid.header, split.level);
-    LeafBox box = leaf_box(fine, split, v0, v1, v2);
-    uint mask = masks.word[index];
-    bool small = box.count <= SMALL_BOX;
-    SeparatingAxes axes;
-    if (!small) {
-        axes = separating_axes(fine, v0, v1, v2, box.cells.low);
-    }
+    uint vertex = references.vertex[split_cells.cell[owner].list_begin + place];
     uint pair = state.state.first_pair + offsets.word[index];
-    uvec3 inside = uvec3((1u << split.level) - 1u);
-    uvec3 cell = box.cells.low;
-    for (uint n = 0u; n < box.count; ++n) {
-        bool overlaps = small ? ((mask >> n) & 1u) != 0u : (!box.test || meets(axes, fine, cell - box.cells.low));
-        if (overlaps) {
-            uvec3 local = cell & inside;
-            keys.word[pair] = split.leaf_begin + local.x + ((local.y + (local.z << split.level)) << split.level);
+    uint leaf_begin = split_cells.cell[owner].leaf_begin;
+    if (box_word == LARGE_LEAF_BOX) {
+        SplitCell split = split_cells.cell[owner];
+        vec3 v0 = triangles.vertex[vertex].xyz;
+        vec3 v1 = triangles.vertex[vertex + 1u].xyz;
+        vec3 v2 = triangles.vertex[vertex + 2u].xyz;
+        GridHeader fine = refined(grid.header, split.level);
+        LeafBox box = leaf_box(fine, split, v0, v1, v2);
+        SeparatingAxes axes = separating_axes(fine, v0, v1, v2, box.cells.low);
+        uvec3 inside = uvec3((1u << split.level) - 1u);
+        uvec3 cell = box.cells.low;
+        for (uint n = 0u; n < box.count; ++n) {
+            if (!box.test || meets(axes, fine, cell - box.cells.low)) {
+                uvec3 local = cell & inside;
+                keys.word[pair] = leaf_begin + local.x + ((local.y + (local.z << split.level)) << split.level);
+                values.word[pair] = vertex;
+                pair += 1u;
+            }
+            cell = next_cell(box.cells, cell);
+        }
+        return;
+    }
+    uint along = 1u << (box_word >> 25u);
+    uvec2 size = (uvec2(box_word >> 15u, box_word >> 20u) & 31u) + uvec2(1u);
+    uint key = leaf_begin + (box_word & 0x7FFFu);
+    uvec2 local = uvec2(0u);
+    for (; mask != 0u; mask >>= 1u) {
+        if ((mask & 1u) != 0u) {
+            keys.word[pair] = key;
             values.word[pair] = vertex;
             pair += 1u;
         }
-        cell = next_cell(box.cells, cell);
+        key += next_id(local, size, along - size.x, along * (along - size.y));
     }
 }

@@ -37,7 +37,6 @@ void main() {
     uint sizes = boxes.word[3u * triangle + 2u];
     uvec2 size = uvec2(sizes & 0xFFFFu, sizes >> 16u);
     uvec3 resolution = grid.header.resolution;
-    // From the last cell of a row to the first of the next, and from the last of a slice.
     uint to_row = resolution.x - size.x;
     uint to_slice = resolution.x * (resolution.y - size.y);
     bool to_a = writes_a(state.state.pass_count, 0u);
@@ -52,12 +51,6 @@ void main() {
             values.word[pair] = 3u * triangle;
             pair += 1u;
         }
-        local.x += 1u;
-        bool row = local.x == size.x;
-        local.x = row ? 0u : local.x;
-        local.y += uint(row);
-        bool slice = local.y == size.y;
-        local.y = slice ? 0u : local.y;
-        cell += 1u + (row ? to_row : 0u) + (slice ? to_slice : 0u);
+        cell += next_id(local, size, to_row, to_slice);
     }
 }

@@ -10,11 +10,18 @@
 layout(local_size_x_id = 0) in;
 layout(local_size_x = 64) in;
 layout(constant_id = 1) const bool EXACT = false;
+layout(constant_id = 2) const uint OWNER_SHIFT = 5;
 
-// The split cell that lists a reference.
-uint split_cell_of(SplitCellsIn cells, uint cell_count, uint reference) {
-    uint low = 0u;
-    uint high = cell_count;
+// The split cell that lists a reference, of those between the owners of its block's first reference and the next block's.
+uint split_cell_of(SplitCellsIn cells, UintsIn owners, StateIn state, uint reference) {
+    uint reference_count = state.state.offset_count - 1u;
+    uint shift = owner_shift(OWNER_SHIFT, reference_count);
+    uint block = reference >> shift;
+    uint low = owners.word[block];
+    uint high = state.state.split_cells;
+    if ((block + 1u) << shift < reference_count) {
+        high = owners.word[block + 1u] + 1u;
+    }
     while (high - low > 1u) {
         uint middle = (low + high) / 2u;
         if (cells.cell[middle].first_reference <= reference) {
@@ -44,6 +51,17 @@ LeafBox leaf_box(GridHeader fine, SplitCell split, vec3 v0, vec3 v1, vec3 v2) {
     bool empty = any(greaterThan(box.cells.low, box.cells.high)) || split.level == 0u;
     box.count = empty ? 0u : cells_of(box.cells);
     return box;
+}
+
+// What the count keeps of a box for the emission: nothing of a large one but that it is one; else its first leaf cell, its sizes less one
+// along x and y, and the level.
+const uint LARGE_LEAF_BOX = 1u << 31;
+
+uint leaf_box_word(LeafBox box, uint level) {
+    uvec3 low = box.cells.low & ((1u << level) - 1u);
+    uvec3 more = box.cells.high - box.cells.low;
+    uint word = (low.x + ((low.y + (low.z << level)) << level)) | more.x << 15u | more.y << 20u | level << 25u;
+    return box.count > SMALL_BOX ? LARGE_LEAF_BOX : (box.count == 0u ? 0u : word);
 }
 
 #endif

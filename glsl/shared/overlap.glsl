@@ -55,6 +55,18 @@ uvec3 next_cell(CellBox box, uvec3 cell) {
     return cell;
 }
 
+// Moves on to the next cell of a box by its place in it, x fastest; how much larger its id is. From the last cell of a row to the first of the
+// next there are `to_row` cells more, and `to_slice` from the last of a slice.
+uint next_id(inout uvec2 local, uvec2 size, uint to_row, uint to_slice) {
+    local.x += 1u;
+    bool row = local.x == size.x;
+    local.x = row ? 0u : local.x;
+    local.y += uint(row);
+    bool slice = local.y == size.y;
+    local.y = slice ? 0u : local.y;
+    return 1u + (row ? to_row : 0u) + (slice ? to_slice : 0u);
+}
+
 // A box of one row of cells is met by its triangle in each of them.
 bool is_row(CellBox box) {
     uvec3 same = uvec3(equal(box.low, box.high));

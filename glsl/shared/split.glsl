@@ -41,6 +41,10 @@ struct SplitCell {
     uint z;
 };
 
+// The split cell that lists the first reference of each block of 2^shift is kept, so that the one of any reference is found among few. There
+// are at most 2^14 blocks, of at least 2^least references.
+uint owner_shift(uint least, uint reference_count) { return max(least, uint(max(findMSB(reference_count), 13) - 13)); }
+
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer SplitCellsIn { SplitCell cell[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer SplitCellsOut { SplitCell cell[]; };
 

@@ -111,6 +111,13 @@ impl Shape {
         if self.sort_alone { self.sort_size } else { 1 }
     }
 
+    /// Least binary logarithm of the number of references of split cells that share one in the list of owners, which lies where the digit
+    /// table will.
+    pub const fn owner_shift(&self) -> u32 {
+        let shift = self.sort_tile().div_ceil(1 << self.sort_bits).next_power_of_two().ilog2();
+        if shift < 5 { 5 } else { shift }
+    }
+
     /// Invocations a workgroup of `table_scan`.
     const fn table_scan_size(&self) -> u32 {
         if !self.sort_alone {
@@ -157,6 +164,7 @@ impl Shape {
             "KEYS_EACH" => self.sort_keys,
             "SORT_ALONE" => self.sort_alone.into(),
             "SORT_TILE" => self.sort_tile(),
+            "OWNER_SHIFT" => self.owner_shift(),
             "TABLE_ROWS" => self.table_rows(),
             "SORT_TILES" => self.sort_tiles(),
             "SPLIT_CELLS_EACH" => self.measured_cells(),

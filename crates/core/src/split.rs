@@ -53,3 +53,9 @@ pub fn leaf_box(fine: &GridHeader, split: &SplitCell, exact: bool, v: [Vec3; 3])
     let empty = split.level == 0 || (0..3).any(|axis| cut.low[axis] > cut.high[axis]);
     (!empty).then_some((cut, exact && !all.is_row()))
 }
+
+/// Binary logarithm of the number of references of split cells that share one in the list of owners: at least `least`, so many that there are
+/// at most 2^14 blocks.
+pub fn owner_shift(least: u32, reference_count: u32) -> u32 {
+    least.max((31 - (reference_count | 1).leading_zeros()).max(13) - 13)
+}

@@ -315,7 +315,7 @@ pub static LEAF_COUNT: Kernel = Kernel {
     spirv: spirv!("../spirv/leaf_count.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 72,
+    push_constant_size: 80,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
@@ -324,10 +324,11 @@ pub static LEAF_COUNT: Kernel = Kernel {
         ("triangles", Access::Read),
         ("counts", Access::Write),
         ("masks", Access::Write),
-        ("owners", Access::Write),
+        ("boxes", Access::Write),
+        ("owners", Access::Read),
         ("cells", Access::Write),
     ],
-    spec_constants: &[(1, "EXACT", 0)],
+    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5)],
 };
 
 /// Kernel `leaf_distance`, from `glsl/cooperative/leaf_distance.comp`.
@@ -349,7 +350,7 @@ pub static LEAF_EMIT: Kernel = Kernel {
     spirv: spirv!("../spirv/leaf_emit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 104,
+    push_constant_size: 112,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
@@ -358,6 +359,7 @@ pub static LEAF_EMIT: Kernel = Kernel {
         ("triangles", Access::Read),
         ("offsets", Access::Read),
         ("masks", Access::Read),
+        ("boxes", Access::Read),
         ("owners", Access::Read),
         ("keys_a", Access::Write),
         ("keys_b", Access::Write),
@@ -365,7 +367,7 @@ pub static LEAF_EMIT: Kernel = Kernel {
         ("values_b", Access::Write),
         ("cells", Access::Write),
     ],
-    spec_constants: &[(1, "EXACT", 0)],
+    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5)],
 };
 
 /// Kernel `nearest_hits`, from `glsl/map/nearest_hits.comp`.
@@ -580,7 +582,7 @@ pub static SPLIT_CELLS: Kernel = Kernel {
     spirv: spirv!("../spirv/split_cells.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 56,
+    push_constant_size: 64,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
@@ -588,8 +590,9 @@ pub static SPLIT_CELLS: Kernel = Kernel {
         ("bricks", Access::Read),
         ("partials", Access::Read),
         ("split_cells", Access::Write),
+        ("owners", Access::Write),
     ],
-    spec_constants: &[(1, "BRICKS_EACH", 4)],
+    spec_constants: &[(1, "BRICKS_EACH", 4), (2, "OWNER_SHIFT", 5)],
 };
 
 /// Kernel `table_scan`, from `glsl/cooperative/table_scan.comp`.
@@ -1157,11 +1160,13 @@ const _: () = {
     assert!(size(|host: &Host| &host.counts) == 8);
     assert!(core::mem::offset_of!(Host, masks) == 48);
     assert!(size(|host: &Host| &host.masks) == 8);
-    assert!(core::mem::offset_of!(Host, owners) == 56);
+    assert!(core::mem::offset_of!(Host, boxes) == 56);
+    assert!(size(|host: &Host| &host.boxes) == 8);
+    assert!(core::mem::offset_of!(Host, owners) == 64);
     assert!(size(|host: &Host| &host.owners) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 64);
+    assert!(core::mem::offset_of!(Host, cells) == 72);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(size_of::<Host>() == 72);
+    assert!(size_of::<Host>() == 80);
 };
 const _: () = {
     use crate::push::LeafDistance as Host;
@@ -1189,19 +1194,21 @@ const _: () = {
     assert!(size(|host: &Host| &host.offsets) == 8);
     assert!(core::mem::offset_of!(Host, masks) == 48);
     assert!(size(|host: &Host| &host.masks) == 8);
-    assert!(core::mem::offset_of!(Host, owners) == 56);
+    assert!(core::mem::offset_of!(Host, boxes) == 56);
+    assert!(size(|host: &Host| &host.boxes) == 8);
+    assert!(core::mem::offset_of!(Host, owners) == 64);
     assert!(size(|host: &Host| &host.owners) == 8);
-    assert!(core::mem::offset_of!(Host, keys_a) == 64);
+    assert!(core::mem::offset_of!(Host, keys_a) == 72);
     assert!(size(|host: &Host| &host.keys_a) == 8);
-    assert!(core::mem::offset_of!(Host, keys_b) == 72);
+    assert!(core::mem::offset_of!(Host, keys_b) == 80);
     assert!(size(|host: &Host| &host.keys_b) == 8);
-    assert!(core::mem::offset_of!(Host, values_a) == 80);
+    assert!(core::mem::offset_of!(Host, values_a) == 88);
     assert!(size(|host: &Host| &host.values_a) == 8);
-    assert!(core::mem::offset_of!(Host, values_b) == 88);
+    assert!(core::mem::offset_of!(Host, values_b) == 96);
     assert!(size(|host: &Host| &host.values_b) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 96);
+    assert!(core::mem::offset_of!(Host, cells) == 104);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(size_of::<Host>() == 104);
+    assert!(size_of::<Host>() == 112);
 };
 const _: () = {
     use crate::push::NearestHits as Host;
@@ -1468,9 +1475,11 @@ const _: () = {
     assert!(size(|host: &Host| &host.partials) == 8);
     assert!(core::mem::offset_of!(Host, split_cells) == 40);
     assert!(size(|host: &Host| &host.split_cells) == 8);
-    assert!(core::mem::offset_of!(Host, leaf_capacity) == 48);
+    assert!(core::mem::offset_of!(Host, owners) == 48);
+    assert!(size(|host: &Host| &host.owners) == 8);
+    assert!(core::mem::offset_of!(Host, leaf_capacity) == 56);
     assert!(size(|host: &Host| &host.leaf_capacity) == 4);
-    assert!(size_of::<Host>() == 56);
+    assert!(size_of::<Host>() == 64);
 };
 const _: () = {
     use crate::push::TableScan as Host;

@@ -472,6 +472,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
                 bricks: Bricks.token(),
                 partials: Occupancy.token(),
                 split_cells: SplitCells.token(),
+                owners: Table.token(),
                 leaf_capacity: capacity.leaf_cells,
                 padding: 0,
             },
@@ -492,15 +493,15 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
     let (grid, state, cells, triangles, references) =
         (Header.token(), LeafState.token(), Cells.token(), Triangles.token(), References.token());
     let (split_cells, report, arguments) = (SplitCells.token(), Report.token(), LeafArguments.token());
-    // Offsets, masks and owners lie where the first level's sorted keys are no longer needed.
-    let (offsets, masks, owners) = (KeysA.token(), KeysB.token(), ValuesA.token());
+    // Offsets, masks and boxes lie where the first level's sorted keys are no longer needed, and owners where the digit table will.
+    let (offsets, masks, boxes, owners) = (KeysA.token(), KeysB.token(), ValuesA.token(), Table.token());
     let passes = leaf_pass_capacity(capacity, shape);
     let count = leaf_argument(offset_of!(Arguments, count));
     plan.step(
         Step::new(
             &LEAF_COUNT,
             count,
-            push::LeafCount { grid, state, split_cells, references, triangles, counts: offsets, masks, owners, cells },
+            push::LeafCount { grid, state, split_cells, references, triangles, counts: offsets, masks, boxes, owners, cells },
         )
         .variant(exact),
     );
@@ -525,6 +526,7 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
         triangles,
         offsets,
         masks,
+        boxes,
         owners,
         keys_a,
         keys_b,

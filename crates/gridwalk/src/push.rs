@@ -47,6 +47,7 @@ pub(crate) struct SplitCells {
     pub(crate) bricks: u64,
     pub(crate) partials: u64,
     pub(crate) split_cells: u64,
+    pub(crate) owners: u64,
     pub(crate) leaf_capacity: u32,
     pub(crate) padding: u32,
 }
@@ -301,6 +302,7 @@ pub(crate) struct LeafCount {
     pub(crate) triangles: u64,
     pub(crate) counts: u64,
     pub(crate) masks: u64,
+    pub(crate) boxes: u64,
     pub(crate) owners: u64,
     pub(crate) cells: u64,
 }
@@ -316,6 +318,7 @@ pub(crate) struct LeafEmit {
     pub(crate) triangles: u64,
     pub(crate) offsets: u64,
     pub(crate) masks: u64,
+    pub(crate) boxes: u64,
     pub(crate) owners: u64,
     pub(crate) keys_a: u64,
     pub(crate) keys_b: u64,

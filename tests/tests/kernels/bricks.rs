@@ -4,7 +4,7 @@ use gridwalk::kernels::{BRICK_DISTANCE_X, BRICK_DISTANCE_Y, BRICK_DISTANCE_Z, BR
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::grid::{brick_resolution, cell_id, cell_of};
 use gridwalk_core::layout::{Brick, BuildState, GridHeader, LeafArguments, SplitCell, TileOccupancy};
-use gridwalk_core::split::{leaf_count_of, leaf_level};
+use gridwalk_core::split::{leaf_count_of, leaf_level, owner_shift};
 use gridwalk_core::twin::brick_distance_x::brick_distance_x;
 use gridwalk_core::twin::brick_distance_y::brick_distance_y;
 use gridwalk_core::twin::brick_distance_z::brick_distance_z;
@@ -130,10 +130,17 @@ fn check_split_cells(
         gpu.upload("partials", sums),
         gpu.guarded("split cells", ((len + 1) * size_of::<SplitCell>()) as u64),
     ];
-    gpu.launch(&SPLIT_CELLS, 0, &memory.each_ref(), &[capacity], groups);
-    let untouched: SplitCell = bytemuck::cast([CANARY; 8]);
-    let mut expected = vec![untouched; len + 1];
-    split_cells(&shape, groups, header, state.least_split, cells, bricks, sums, &mut expected, capacity);
+    let blocks = (state.offset_count - 1).div_ceil(1 << owner_shift(shape.owner_shift(), state.offset_count - 1)) as usize;
+    assert!(blocks <= 1 << 14, "{what}");
+    let owners = gpu.guarded("owners", 4 * blocks.max(1) as u64);
+    let all: Vec<_> = memory.iter().chain([&owners]).collect();
+    gpu.launch(&SPLIT_CELLS, 0, &all, &[capacity], groups);
+    let unwritten: SplitCell = bytemuck::cast([CANARY; 8]);
+    let mut expected = vec![unwritten; len + 1];
+    let mut expected_owners = untouched(blocks.max(1));
+    split_cells(&shape, groups, header, state, cells, bricks, sums, &mut expected, &mut expected_owners, capacity);
+    assert_same(&format!("{what}: owners"), &owners.read::<u32>(0, blocks.max(1)), &expected_owners);
+    assert!(blocks == 0 || !expected_owners.contains(&CANARY), "{what}: a block that no split cell has");
     let found = memory[5].read::<SplitCell>(0, len + 1);
     assert_same(&format!("{what}: split cells"), &found, &expected);
     let (mut references, mut leaves) = (0, 0);

@@ -24,7 +24,6 @@ pub struct Leaves<'a> {
 
 /// A reference of a split cell.
 struct Listed<'a> {
-    owner: u32,
     split: &'a SplitCell,
     place: u32,
 }
@@ -34,7 +33,7 @@ impl Leaves<'_> {
         let records = &self.split_cells[..self.state.split_cells as usize];
         let owner = records.partition_point(|split| split.first_reference <= reference) - 1;
         let split = &records[owner];
-        Listed { owner: owner as u32, split, place: reference - split.first_reference }
+        Listed { split, place: reference - split.first_reference }
     }
 
     /// The box of leaf cells, and those that the triangle of this first vertex overlaps.
@@ -55,6 +54,16 @@ impl Leaves<'_> {
     }
 }
 
+/// What the count keeps of a large box.
+const LARGE_LEAF_BOX: u32 = 1 << 31;
+
+/// What it keeps of a small one: its first leaf cell, its sizes less one along x and y, and the level.
+fn box_word(cells: &CellBox, level: u32) -> u32 {
+    let low = cells.low.map(|n| n & ((1 << level) - 1));
+    let [x, y] = [0, 1].map(|axis| cells.high[axis] - cells.low[axis]);
+    cell_id(low, [1 << level; 3]) | x << 15 | y << 20 | level << 25
+}
+
 /// Counts the leaf cells that each triangle of a split cell overlaps, and empties the leaf cells.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn leaf_count(
@@ -64,25 +73,25 @@ pub fn leaf_count(
     references: &[u32],
     counts: &mut [u32],
     masks: &mut [u32],
-    owners: &mut [u32],
+    boxes: &mut [u32],
     cells: &mut [[u32; 2]],
 ) {
     counts[leaves.state.offset_count as usize - 1] = 0;
     for reference in leaves.covered(shape, groups) {
-        let Listed { owner, split, place } = leaves.listed(reference);
-        owners[reference as usize] = owner;
+        let Listed { split, place } = leaves.listed(reference);
         if place == 0 && split.level != 0 {
             let first = (leaves.state.first_cell + split.leaf_begin) as usize;
             cells[first..first + leaf_count_of(split.level) as usize].fill([0, 0]);
         }
         let overlapped = leaves.overlapped(split, references[(split.list_begin + place) as usize]);
-        let (count, mask) = overlapped.map_or((0, 0), |(cells, overlapped)| {
+        let (count, mask, word) = overlapped.map_or((0, 0, 0), |(cells, overlapped)| {
             let small = cells.count() <= SMALL_BOX;
             let mask = overlapped.iter().filter(|_| small).fold(0, |mask, n| mask | 1 << n);
-            (overlapped.len() as u32, mask)
+            (overlapped.len() as u32, mask, if small { box_word(&cells, split.level) } else { LARGE_LEAF_BOX })
         });
         counts[reference as usize] = count;
         masks[reference as usize] = mask;
+        boxes[reference as usize] = word;
     }
 }
 
@@ -90,7 +99,7 @@ pub fn leaf_count(
 pub fn leaf_emit(shape: &Shape, groups: [u32; 3], leaves: &Leaves, references: &[u32], cells: &mut [[u32; 2]]) -> Vec<(u32, u32)> {
     let mut pairs = Vec::new();
     for reference in leaves.covered(shape, groups) {
-        let Listed { split, place, .. } = leaves.listed(reference);
+        let Listed { split, place } = leaves.listed(reference);
         if place == 0 && split.level != 0 {
             cells[split.cell as usize] = [leaves.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level];
         }

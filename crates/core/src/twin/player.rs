@@ -273,9 +273,9 @@ impl Memory {
                 report_spine(shape, &self.header, &self.state, partials, leaf_state, arguments, report, words[0]);
             }
             "split_cells" => {
-                let least = self.leaf_state.least_split;
                 let (cells, bricks, partials) = (&self.cells, &self.bricks, &self.occupancy);
-                split_cells(shape, groups, &self.header, least, cells, bricks, partials, &mut self.split_cells, words[0]);
+                let (records, owners) = (&mut self.split_cells, &mut self.table);
+                split_cells(shape, groups, &self.header, &self.leaf_state, cells, bricks, partials, records, owners, words[0]);
             }
             "leaf_args" => {
                 let (state, arguments, report) = (&mut self.leaf_state, &mut self.leaf_arguments, &mut self.report);
@@ -291,8 +291,8 @@ impl Memory {
                     exact: step.exact,
                 };
                 if step.kernel == "leaf_count" {
-                    let (counts, masks, owners) = (&mut self.keys_a, &mut self.keys_b, &mut self.values_a);
-                    leaf_count(shape, groups, &leaves, &self.references, counts, masks, owners, &mut self.cells);
+                    let (counts, masks, boxes) = (&mut self.keys_a, &mut self.keys_b, &mut self.values_a);
+                    leaf_count(shape, groups, &leaves, &self.references, counts, masks, boxes, &mut self.cells);
                 } else {
                     let pairs = leaf_emit(shape, groups, &leaves, &self.references, &mut self.cells);
                     let (keys, values) = match writes_a(self.leaf_state.pass_count, 0) {

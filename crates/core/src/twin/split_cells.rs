@@ -3,23 +3,27 @@
 use super::brick_reduce::cells_of_brick;
 use crate::dispatch::workgroups;
 use crate::grid::{brick_resolution, cell_id};
-use crate::layout::{Brick, GridHeader, SplitCell, TileOccupancy};
+use crate::layout::{Brick, BuildState, GridHeader, SplitCell, TileOccupancy};
 use crate::shape::Shape;
-use crate::split::{LEAST_SPLIT, leaf_count_of, leaf_level};
+use crate::split::{LEAST_SPLIT, leaf_count_of, leaf_level, owner_shift};
 
-/// Writes a record of each cell that is to be split: with at least `least` triangles.
+/// Writes a record of each cell that is to be split: with at least the state's `least_split`
+/// triangles; and whose the first reference of each block is.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn split_cells(
     shape: &Shape,
     groups: [u32; 3],
     grid: &GridHeader,
-    least: u32,
+    state: &BuildState,
     cells: &[[u32; 2]],
     bricks: &[Brick],
     partials: &[TileOccupancy],
     records: &mut [SplitCell],
+    owners: &mut [u32],
     leaf_capacity: u32,
 ) {
+    let least = state.least_split;
+    let shift = owner_shift(shape.owner_shift(), state.offset_count - 1);
     let count: u32 = brick_resolution(grid.resolution).iter().product();
     for tile in workgroups(groups) {
         let first = tile * shape.brick_tile();
@@ -43,6 +47,8 @@ pub fn split_cells(
             let [x, y, z] = cell;
             records[record as usize] =
                 SplitCell { first_reference, list_begin, list_length, leaf_begin, cell: id, level, xy: x | y << 16, z };
+            let blocks = first_reference.div_ceil(1 << shift)..(first_reference + list_length).div_ceil(1 << shift);
+            owners[blocks.start as usize..blocks.end as usize].fill(record);
             record += 1;
             first_reference += list_length;
             leaf_begin = leaf_end;
