@@ -76,13 +76,10 @@ void main() {
     uint along = 1u << (box_word >> 25u);
     uvec2 size = (uvec2(box_word >> 15u, box_word >> 20u) & 31u) + uvec2(1u);
     uint key = leaf_begin + (box_word & 0x7FFFu);
-    uvec2 local = uvec2(0u);
-    for (; mask != 0u; mask >>= 1u) {
-        if ((mask & 1u) != 0u) {
-            keys.word[pair] = key;
-            values.word[pair] = vertex;
-            pair += 1u;
-        }
-        key += next_id(local, size, along - size.x, along * (along - size.y));
+    vec2 inverse = vec2(1.0) / vec2(size);
+    for (; mask != 0u; mask &= mask - 1u) {
+        keys.word[pair] = key + id_within(uint(findLSB(mask)), inverse, along - size.x, along * (along - size.y));
+        values.word[pair] = vertex;
+        pair += 1u;
     }
 }

@@ -42,15 +42,12 @@ void main() {
     bool to_a = writes_a(state.state.pass_count, 0u);
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
-    uvec2 local = uvec2(0u);
+    vec2 inverse = vec2(1.0) / vec2(size);
     uint pair = offsets.word[triangle];
     uint pair_count = state.state.pair_count;
-    for (; mask != 0u && pair < pair_count; mask >>= 1u) {
-        if ((mask & 1u) != 0u) {
-            keys.word[pair] = cell;
-            values.word[pair] = 3u * triangle;
-            pair += 1u;
-        }
-        cell += next_id(local, size, to_row, to_slice);
+    for (; mask != 0u && pair < pair_count; mask &= mask - 1u) {
+        keys.word[pair] = cell + id_within(uint(findLSB(mask)), inverse, to_row, to_slice);
+        values.word[pair] = 3u * triangle;
+        pair += 1u;
     }
 }

@@ -55,16 +55,15 @@ uvec3 next_cell(CellBox box, uvec3 cell) {
     return cell;
 }
 
-// Moves on to the next cell of a box by its place in it, x fastest; how much larger its id is. From the last cell of a row to the first of the
-// next there are `to_row` cells more, and `to_slice` from the last of a slice.
-uint next_id(inout uvec2 local, uvec2 size, uint to_row, uint to_slice) {
-    local.x += 1u;
-    bool row = local.x == size.x;
-    local.x = row ? 0u : local.x;
-    local.y += uint(row);
-    bool slice = local.y == size.y;
-    local.y = slice ? 0u : local.y;
-    return 1u + (row ? to_row : 0u) + (slice ? to_slice : 0u);
+uint small_whole(float x) { return floatBitsToUint(x + 8388608.0) & 0x7FFFFFu; }
+
+// How much larger than the first cell's the id of cell n of a small box is, x fastest: from the last cell of a row to the first of the next
+// there are `to_row` cells more, and `to_slice` from the last of a slice. `inverse` is 1 / cells along x and y: quotients of numbers below 32
+// that lie half a one away from where rounding would count.
+uint id_within(uint n, vec2 inverse, uint to_row, uint to_slice) {
+    float row = floor((float(n) + 0.5) * inverse.x);
+    float slice = floor((row + 0.5) * inverse.y);
+    return n + small_whole(row) * to_row + small_whole(slice) * to_slice;
 }
 
 // A box of one row of cells is met by its triangle in each of them.
