@@ -79,9 +79,11 @@ vec3 boundary(vec3 box_min, vec3 cell_size, vec3 i) {
 // at a time.
 uvec3 whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
 
-// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below.
-uvec3 whole_below(vec3 x) { return floatBitsToUint(x + vec3(8388607.5)) & uvec3(0x7FFFFFu); }
+// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below. For x in (-2^23, 0.5) a number
+// that is below 1, mostly another.
+ivec3 whole_below(vec3 x) { return floatBitsToInt(x + vec3(8388607.5)) - ivec3(0x4B000000); }
 
-uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
+// Two products that do not wait for each other.
+uint cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * cell.y + resolution.x * resolution.y * cell.z; }
 
 #endif

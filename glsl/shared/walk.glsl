@@ -50,11 +50,11 @@ vec3 walk_boundaries(Walk walk, GridHeader grid) {
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
 void walk_enter(inout Walk walk, GridHeader grid) {
-    ivec3 bricks_along = ivec3(brick_resolution(grid.resolution));
+    uvec3 bricks_along = brick_resolution(grid.resolution);
     int shift = int(grid.fine_shift);
     ivec3 cell = walk.cell >> shift;
     ivec3 at = cell >> 2;
-    Brick brick = Bricks(grid.bricks).brick[at.x + bricks_along.x * (at.y + bricks_along.y * at.z)];
+    Brick brick = Bricks(grid.bricks).brick[cell_id(uvec3(at), bricks_along)];
     ivec3 inner = cell & 3;
     uint bit = uint(inner.x | (inner.y << 2) | ((inner.z & 1) << 4));
     uint word = inner.z < 2 ? brick.mask.x : brick.mask.y;
@@ -79,18 +79,18 @@ void walk_enter(inout Walk walk, GridHeader grid) {
     int reach = int(brick.distance);
     // Of a jump the cells' shift is still the first level's.
     ivec3 next = (ahead >> shift) + walk.one_up;
-    ivec3 beyond = (at + select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2;
-    walk.edge = (reach != 0 ? min(max(beyond, ivec3(0)), ivec3(grid.resolution)) : next) << shift;
+    // Beyond the grid's upper end nothing is known, and nothing is: the walk ends there. See walk_step for the lower.
+    ivec3 beyond = max((at + select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2, ivec3(0));
+    walk.edge = (reach != 0 ? beyond : next) << shift;
     // As integers: none is below 0 that the maximum does not take.
     ivec3 boundaries = floatBitsToInt(walk_boundaries(walk, grid));
     walk.exit = intBitsToFloat(max(floatBitsToInt(walk.exit), min(boundaries.x, min(boundaries.y, boundaries.z))));
 }
 
-ivec3 walk_cell_at(Walk walk, GridHeader grid, float s) {
+// Where the ray's point lies, in fine cells.
+vec3 walk_point(Walk walk, GridHeader grid, float s) {
     vec3 travelled = s * walk.ray.direction;
-    vec3 cells = (walk.from_low + travelled) * grid.inverse_fine_cell_size;
-    // Clamped as floats: a conversion out of range may give anything.
-    return ivec3(whole_below(min(max(cells, vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5))));
+    return (walk.from_low + travelled) * grid.inverse_fine_cell_size;
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
@@ -104,7 +104,8 @@ Walk walk_begin(GridHeader grid, MovedRay ray) {
     vec3 at_zero = -ray.origin * walk.inverse;
     walk.at_zero = vec3(still.x ? BEYOND : at_zero.x, still.y ? BEYOND : at_zero.y, still.z ? BEYOND : at_zero.z);
     walk.from_low = ray.origin - grid.box_min;
-    walk.cell = walk_cell_at(walk, grid, 0.0);
+    vec3 at = min(max(walk_point(walk, grid, 0.0), vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5));
+    walk.cell = whole_below(at);
     walk.exit = 0.0;
     walk.best_s = ray.s_max;
     walk.best_u = 0.0;
@@ -122,7 +123,8 @@ bool walk_step(inout Walk walk, GridHeader grid) {
     bool x = boundaries.x <= boundaries.y && boundaries.x <= boundaries.z;
     bool y = !x && boundaries.y <= boundaries.z;
     ivec3 last = walk.edge - walk.one_up;
-    ivec3 inside = walk_cell_at(walk, grid, walk.exit);
+    // The last is never below 0, so what is wrong of a point below 0.5 does not count.
+    ivec3 inside = whole_below(walk_point(walk, grid, walk.exit));
     inside = min(max(inside, min(walk.cell, last)), max(walk.cell, last));
     ivec3 beyond = last + 2 * walk.one_up - ivec3(1);
     walk.cell = select(bvec3(x, y, !x && !y), beyond, inside);

@@ -8,9 +8,10 @@ pub fn boundary(box_min: Vec3, cell_size: Vec3, i: Vec3) -> Vec3 {
     add(box_min, offset)
 }
 
-/// floor(x) for x in [0.5, 2^23 - 0.5]: the nearest to x - 0.5. Of odd whole numbers the one below.
-pub fn whole_below(x: f32) -> u32 {
-    (x + 8_388_607.5).to_bits() & 0x7F_FFFF
+/// floor(x) for x in [0.5, 2^23 - 0.5]: the nearest to x - 0.5. Of odd whole numbers the one below. For x in (-2^23, 0.5) a number that is
+/// below 1, mostly another.
+pub fn whole_below(x: f32) -> i32 {
+    (x + 8_388_607.5).to_bits() as i32 - 0x4B00_0000
 }
 
 /// Cells along each axis of a brick.
@@ -23,7 +24,7 @@ pub fn brick_resolution(resolution: [u32; 3]) -> [u32; 3] {
 
 /// Index of a cell.
 pub fn cell_id(cell: [u32; 3], resolution: [u32; 3]) -> u32 {
-    cell[0] + resolution[0] * (cell[1] + resolution[1] * cell[2])
+    cell[0] + resolution[0] * cell[1] + resolution[0] * resolution[1] * cell[2]
 }
 
 /// Cell of an index: the inverse of [`cell_id`].
@@ -50,6 +51,9 @@ mod tests {
         ];
         for (x, expected) in cases {
             assert_eq!(whole_below(x), expected, "{x}");
+        }
+        for x in [0.499_999_97, 0.25, 0.1, 0.0, -0.0, -0.3, -1.0, -1000.5, -8_388_607.0] {
+            assert!(whole_below(x) < 1, "{x}: {}", whole_below(x));
         }
     }
 }

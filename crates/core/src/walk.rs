@@ -167,19 +167,17 @@ fn walk_enter(walk: &mut Walk, grid: &Grid) {
         let block = walk.cell.map(|i| i >> shift);
         (std::array::from_fn(|axis| block[axis] - around[0][axis]), std::array::from_fn(|axis| block[axis] + 1 + around[1][axis]))
     } else {
-        let end = header.resolution;
-        (at.map(|i| ((i - (reach - 1)) << 2).max(0)), std::array::from_fn(|axis| ((at[axis] + reach) << 2).min(end[axis] as i32)))
+        (at.map(|i| ((i - (reach - 1)) << 2).max(0)), at.map(|i| (i + reach) << 2))
     };
     (walk.low, walk.high) = (walk.low.map(|i| i << shift), walk.high.map(|i| i << shift));
     let [x, y, z] = walk.boundaries(header);
     walk.exit = max_f32(walk.exit, min_f32(x, min_f32(y, z)));
 }
 
-fn walk_cell_at(walk: &Walk, header: &GridHeader, s: f32) -> [i32; 3] {
+/// Where the ray's point lies, in fine cells.
+fn walk_point(walk: &Walk, header: &GridHeader, s: f32) -> Vec3 {
     let travelled = walk.ray.direction.map(|x| s * x);
-    let cells = mul(add(walk.from_low, travelled), header.inverse_fine_cell_size);
-    let last = sub(header.resolution.map(|n| (n << header.fine_shift) as f32), [0.5; 3]);
-    min(max(cells, [0.5; 3]), last).map(|x| whole_below(x) as i32)
+    mul(add(walk.from_low, travelled), header.inverse_fine_cell_size)
 }
 
 /// A walk that has no cell: for tests of triangles alone.
@@ -215,7 +213,8 @@ pub fn walk_begin(grid: &Grid, ray: MovedRay) -> Walk {
         up: ray.direction.map(|x| x > 0.0),
         ..walk_nowhere(ray)
     };
-    walk.cell = walk_cell_at(&walk, grid.header, 0.0);
+    let last = sub(grid.header.resolution.map(|n| (n << grid.header.fine_shift) as f32), [0.5; 3]);
+    walk.cell = min(max(walk_point(&walk, grid.header, 0.0), [0.5; 3]), last).map(whole_below);
     walk_enter(&mut walk, grid);
     walk
 }
@@ -230,7 +229,7 @@ pub fn walk_step(walk: &mut Walk, grid: &Grid) -> bool {
     } else {
         2
     };
-    let inside = walk_cell_at(walk, grid.header, walk.exit);
+    let inside = walk_point(walk, grid.header, walk.exit).map(whole_below);
     walk.cell = std::array::from_fn(|axis| {
         let (cell, low, high) = (walk.cell[axis], walk.low[axis], walk.high[axis]);
         match (axis == along, walk.up[axis]) {
@@ -240,7 +239,7 @@ pub fn walk_step(walk: &mut Walk, grid: &Grid) -> bool {
             (false, false) => inside[axis].max(low).min(cell),
         }
     });
-    if walk.cell[along] as u32 >= grid.header.resolution[along] << grid.header.fine_shift {
+    if (0..3).any(|axis| walk.cell[axis] as u32 >= grid.header.resolution[axis] << grid.header.fine_shift) {
         return false;
     }
     walk_enter(walk, grid);

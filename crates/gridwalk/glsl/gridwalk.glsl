@@ -149,10 +149,12 @@ precise vec3 gridwalk_boundary(vec3 box_min, vec3 cell_size, vec3 i) {
 // at a time.
 uvec3 gridwalk_whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
 
-// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below.
-uvec3 gridwalk_whole_below(vec3 x) { return floatBitsToUint(x + vec3(8388607.5)) & uvec3(0x7FFFFFu); }
+// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below. For x in (-2^23, 0.5) a number
+// that is below 1, mostly another.
+ivec3 gridwalk_whole_below(vec3 x) { return floatBitsToInt(x + vec3(8388607.5)) - ivec3(0x4B000000); }
 
-uint gridwalk_cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * (cell.y + resolution.y * cell.z); }
+// Two products that do not wait for each other.
+uint gridwalk_cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution.x * cell.y + resolution.x * resolution.y * cell.z; }
 
 #endif
 
@@ -352,11 +354,11 @@ precise vec3 gridwalk_walk_boundaries(GridwalkWalk walk, GridwalkGridHeader grid
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
 void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader grid) {
-    ivec3 bricks_along = ivec3(gridwalk_brick_resolution(grid.resolution));
+    uvec3 bricks_along = gridwalk_brick_resolution(grid.resolution);
     int shift = int(grid.fine_shift);
     ivec3 cell = walk.cell >> shift;
     ivec3 at = cell >> 2;
-    GridwalkBrick brick = GridwalkBricks(grid.bricks).brick[at.x + bricks_along.x * (at.y + bricks_along.y * at.z)];
+    GridwalkBrick brick = GridwalkBricks(grid.bricks).brick[gridwalk_cell_id(uvec3(at), bricks_along)];
     ivec3 inner = cell & 3;
     uint bit = uint(inner.x | (inner.y << 2) | ((inner.z & 1) << 4));
     uint word = inner.z < 2 ? brick.mask.x : brick.mask.y;
@@ -381,18 +383,18 @@ void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader gri
     int reach = int(brick.distance);
     // Of a jump the cells' shift is still the first level's.
     ivec3 next = (ahead >> shift) + walk.one_up;
-    ivec3 beyond = (at + gridwalk_select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2;
-    walk.edge = (reach != 0 ? min(max(beyond, ivec3(0)), ivec3(grid.resolution)) : next) << shift;
+    // Beyond the grid's upper end nothing is known, and nothing is: the walk ends there. See walk_step for the lower.
+    ivec3 beyond = max((at + gridwalk_select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2, ivec3(0));
+    walk.edge = (reach != 0 ? beyond : next) << shift;
     // As integers: none is below 0 that the maximum does not take.
     ivec3 boundaries = floatBitsToInt(gridwalk_walk_boundaries(walk, grid));
     walk.exit = intBitsToFloat(max(floatBitsToInt(walk.exit), min(boundaries.x, min(boundaries.y, boundaries.z))));
 }
 
-ivec3 gridwalk_walk_cell_at(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
+// Where the ray's point lies, in fine cells.
+precise vec3 gridwalk_walk_point(GridwalkWalk walk, GridwalkGridHeader grid, float s) {
     precise vec3 travelled = s * walk.ray.direction;
-    precise vec3 cells = (walk.from_low + travelled) * grid.inverse_fine_cell_size;
-    // Clamped as floats: a conversion out of range may give anything.
-    return ivec3(gridwalk_whole_below(min(max(cells, vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5))));
+    return (walk.from_low + travelled) * grid.inverse_fine_cell_size;
 }
 
 // At the ray's first cell. Only for a valid ray and a grid of at least one cell.
@@ -406,7 +408,8 @@ precise GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedR
     precise vec3 at_zero = -ray.origin * walk.inverse;
     walk.at_zero = vec3(still.x ? GRIDWALK_BEYOND : at_zero.x, still.y ? GRIDWALK_BEYOND : at_zero.y, still.z ? GRIDWALK_BEYOND : at_zero.z);
     walk.from_low = ray.origin - grid.box_min;
-    walk.cell = gridwalk_walk_cell_at(walk, grid, 0.0);
+    precise vec3 at = min(max(gridwalk_walk_point(walk, grid, 0.0), vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5));
+    walk.cell = gridwalk_whole_below(at);
     walk.exit = 0.0;
     walk.best_s = ray.s_max;
     walk.best_u = 0.0;
@@ -424,7 +427,8 @@ bool gridwalk_walk_step(precise inout GridwalkWalk walk, GridwalkGridHeader grid
     bool x = boundaries.x <= boundaries.y && boundaries.x <= boundaries.z;
     bool y = !x && boundaries.y <= boundaries.z;
     ivec3 last = walk.edge - walk.one_up;
-    ivec3 inside = gridwalk_walk_cell_at(walk, grid, walk.exit);
+    // The last is never below 0, so what is wrong of a point below 0.5 does not count.
+    ivec3 inside = gridwalk_whole_below(gridwalk_walk_point(walk, grid, walk.exit));
     inside = min(max(inside, min(walk.cell, last)), max(walk.cell, last));
     ivec3 beyond = last + 2 * walk.one_up - ivec3(1);
     walk.cell = gridwalk_select(bvec3(x, y, !x && !y), beyond, inside);
