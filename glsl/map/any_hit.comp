@@ -23,6 +23,7 @@ layout(push_constant, std430) uniform AnyHit {
 };
 
 void main() {
+    GridHeader header = load_header(grid);
     uint place = invocation_index();
     if (place >= state.state.ray_count) {
         return;
@@ -32,7 +33,6 @@ void main() {
     }
     TRACE_INDEX(index, place)
     Ray ray = rays.ray[index];
-    GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
     Counters seen = Counters(0u, 0u, 0u);
     uint result = 0u;

@@ -23,6 +23,7 @@ layout(push_constant, std430) uniform ClosestHit {
 };
 
 void main() {
+    GridHeader header = load_header(grid);
     uint place = invocation_index();
     if (place >= state.state.ray_count) {
         return;
@@ -32,7 +33,6 @@ void main() {
     }
     TRACE_INDEX(index, place)
     Ray ray = rays.ray[index];
-    GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
     Hit hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
     if (RESUME) {

@@ -46,6 +46,7 @@ bool count_run(inout Walk walk, GridHeader header, inout float entry, inout uint
 }
 
 void main() {
+    GridHeader header = load_header(grid);
     uint place = invocation_index();
     if (place >= state.state.ray_count) {
         return;
@@ -56,7 +57,6 @@ void main() {
         return;
     }
     TRACE_INDEX(index, place)
-    GridHeader header = grid.header;
     MovedRay moved = move_ray(rays.ray[index], header);
     uint count = 0u;
     bool given_up = false;

@@ -92,6 +92,7 @@ bool nearest_run(inout Search search, inout Walk walk, GridHeader header, Ray ra
 }
 
 void main() {
+    GridHeader header = load_header(grid);
     uint place = invocation_index();
     if (place >= state.state.ray_count) {
         return;
@@ -104,7 +105,6 @@ void main() {
     }
     TRACE_INDEX(index, place)
     Ray ray = rays.ray[index];
-    GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
     Search search = Search(index, continues ? (walks.walk[place].given_up & ((1u << WALK_FINE) - 1u)) - 1u : 0u, -GRIDWALK_INFINITY, 0u, 0u);
     uint rest = GRIDWALK_MISS;

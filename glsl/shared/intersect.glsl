@@ -9,6 +9,7 @@
 struct MovedRay {
     vec3 origin;
     vec3 direction;
+    vec3 inverse; // of the direction; 0 where that is 0
     float s_min;
     float s_max;
     // t = (start + s) * t_of_s.x * t_of_s.y: two powers of two, each representable where their product may not be.
@@ -31,14 +32,20 @@ float power_of_two(int e) { return uintBitsToFloat(uint(e + 127) << 23); }
 // floor(log2(x)) for normal x > 0, clamped so that the power of two and its inverse are normal numbers.
 int clamped_exponent(float x) { return clamp(int((floatBitsToUint(x) >> 23) & 255u) - 127, -126, 126); }
 
-bool is_finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
+bool is_finite(vec3 v) { return all(lessThan(abs(v), vec3(GRIDWALK_INFINITY))); }
+
+vec3 select(bvec3 which, vec3 yes, vec3 no) {
+    return vec3(which.x ? yes.x : no.x, which.y ? yes.y : no.y, which.z ? yes.z : no.z);
+}
 
 vec3 permute(MovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
 
 MovedRay move_ray(Ray ray, GridHeader grid) {
     MovedRay moved;
     vec3 magnitude = abs(ray.direction);
-    float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
+    moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
+    moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
+    float largest = permute(moved, magnitude).z;
     moved.valid = is_finite(ray.origin) && is_finite(ray.direction) && largest > 0.0 && !isnan(ray.t_min) && !isnan(ray.t_max);
     if (!moved.valid) {
         return moved;
@@ -46,29 +53,24 @@ MovedRay move_ray(Ray ray, GridHeader grid) {
     int exponent = clamped_exponent(largest);
     float shrink = power_of_two(-exponent);
     float grow = power_of_two(exponent);
-    bvec3 zero = lessThan(magnitude, vec3(largest * NEGLIGIBLE_COMPONENT));
-    vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
-                          zero.z ? 0.0 : ray.direction.z * shrink);
+    vec3 direction = select(lessThan(magnitude, vec3(largest * NEGLIGIBLE_COMPONENT)), vec3(0.0), ray.direction * shrink);
+    bvec3 still = equal(direction, vec3(0.0));
+    vec3 inverse = select(still, vec3(0.0), 1.0 / direction);
     vec3 origin = to_frame(grid, ray.origin);
     moved.t_of_s = vec2(grid.inverse_scale, shrink);
     float first = ray.t_min * grow * grid.scale;
     float last = ray.t_max * grow * grid.scale;
 
     // The interval of the box, and the tests of the axes along which the ray does not move.
-    float entry = -GRIDWALK_INFINITY;
-    float leave = GRIDWALK_INFINITY;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (direction[axis] == 0.0) {
-            moved.valid = moved.valid && origin[axis] >= grid.box_min[axis] && origin[axis] <= grid.box_max[axis];
-        } else {
-            float inverse = 1.0 / direction[axis];
-            bool up = direction[axis] > 0.0;
-            float near = ((up ? grid.box_min[axis] : grid.box_max[axis]) - origin[axis]) * inverse;
-            float far = ((up ? grid.box_max[axis] : grid.box_min[axis]) - origin[axis]) * inverse;
-            entry = max(entry, near);
-            leave = min(leave, far);
-        }
-    }
+    bvec3 beside = bvec3(uvec3(lessThan(origin, grid.box_min)) | uvec3(greaterThan(origin, grid.box_max)));
+    moved.valid = !any(bvec3(uvec3(still) & uvec3(beside)));
+    bvec3 up = greaterThan(direction, vec3(0.0));
+    vec3 to_low = (grid.box_min - origin) * inverse;
+    vec3 to_high = (grid.box_max - origin) * inverse;
+    vec3 near = select(still, vec3(-GRIDWALK_INFINITY), select(up, to_low, to_high));
+    vec3 far = select(still, vec3(GRIDWALK_INFINITY), select(up, to_high, to_low));
+    float entry = max(near.x, max(near.y, near.z));
+    float leave = min(far.x, min(far.y, far.z));
     // From far away both are rounded by more than the padding; what lies behind the origin is never visited.
     entry -= abs(entry) * SLAB_TOLERANCE;
     leave += abs(leave) * SLAB_TOLERANCE;
@@ -82,12 +84,10 @@ MovedRay move_ray(Ray ray, GridHeader grid) {
     moved.s_min = first - moved.start;
     moved.s_max = last - moved.start;
 
-    magnitude = abs(direction);
-    moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
-    moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
     moved.direction = direction;
+    moved.inverse = inverse;
     vec3 permuted = permute(moved, direction);
-    float inverse_z = 1.0 / permuted.z;
+    float inverse_z = permute(moved, inverse).z;
     moved.shear = vec3(permuted.x * inverse_z, permuted.y * inverse_z, inverse_z);
     return moved;
 }

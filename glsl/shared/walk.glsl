@@ -17,7 +17,6 @@
 struct Walk {
     MovedRay ray;
     vec3 from_low; // the ray's origin, seen from the grid's lower corner
-    vec3 inverse; // of the direction; 0 where that is 0
     vec3 at_zero; // s where a coordinate is 0; beyond any where the direction is 0
     bvec3 up; // the direction is positive
     ivec3 one_up; // 1 where it is, else 0
@@ -45,7 +44,7 @@ ivec3 select(bvec3 which, ivec3 yes, ivec3 no) {
 
 // s of the boundary of the block ahead along each axis.
 vec3 walk_boundaries(Walk walk, GridHeader grid) {
-    return boundary(grid.box_min, grid.fine_cell_size, vec3(walk.edge)) * walk.inverse + walk.at_zero;
+    return boundary(grid.box_min, grid.fine_cell_size, vec3(walk.edge)) * walk.ray.inverse + walk.at_zero;
 }
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
@@ -97,12 +96,9 @@ vec3 walk_point(Walk walk, GridHeader grid, float s) {
 Walk walk_begin(GridHeader grid, MovedRay ray) {
     Walk walk;
     walk.ray = ray;
-    bvec3 still = equal(ray.direction, vec3(0.0));
     walk.up = greaterThan(ray.direction, vec3(0.0));
     walk.one_up = select(walk.up, ivec3(1), ivec3(0));
-    walk.inverse = vec3(still.x ? 0.0 : 1.0 / ray.direction.x, still.y ? 0.0 : 1.0 / ray.direction.y, still.z ? 0.0 : 1.0 / ray.direction.z);
-    vec3 at_zero = -ray.origin * walk.inverse;
-    walk.at_zero = vec3(still.x ? BEYOND : at_zero.x, still.y ? BEYOND : at_zero.y, still.z ? BEYOND : at_zero.z);
+    walk.at_zero = select(equal(ray.direction, vec3(0.0)), vec3(BEYOND), -ray.origin * ray.inverse);
     walk.from_low = ray.origin - grid.box_min;
     vec3 at = min(max(walk_point(walk, grid, 0.0), vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5));
     walk.cell = whole_below(at);

@@ -20,6 +20,8 @@ pub struct MovedRay {
     pub origin: Vec3,
     /// Scaled; negligible components are zero.
     pub direction: Vec3,
+    /// Of the direction; 0 where that is 0.
+    pub inverse: Vec3,
     /// Least s of a hit.
     pub s_min: f32,
     /// Greatest s of a hit.
@@ -64,6 +66,8 @@ pub fn move_ray(ray: &Ray, grid: &GridHeader) -> Option<MovedRay> {
         let zero = magnitude[axis] < longest * NEGLIGIBLE_COMPONENT;
         if zero { 0.0 } else { ray.direction[axis] * shrink }
     });
+    let still = direction.map(|x| x == 0.0);
+    let inverse: Vec3 = std::array::from_fn(|axis| if still[axis] { 0.0 } else { 1.0 / direction[axis] });
     let origin = grid.to_frame(ray.origin);
     let first = ray.t_min * grow * grid.scale;
     let last = ray.t_max * grow * grid.scale;
@@ -72,13 +76,12 @@ pub fn move_ray(ray: &Ray, grid: &GridHeader) -> Option<MovedRay> {
     let mut leave = f32::INFINITY;
     let mut valid = true;
     for axis in 0..3 {
-        if direction[axis] == 0.0 {
+        if still[axis] {
             valid = valid && origin[axis] >= grid.box_min[axis] && origin[axis] <= grid.box_max[axis];
         } else {
-            let inverse = 1.0 / direction[axis];
             let up = direction[axis] > 0.0;
-            let near = ((if up { grid.box_min[axis] } else { grid.box_max[axis] }) - origin[axis]) * inverse;
-            let far = ((if up { grid.box_max[axis] } else { grid.box_min[axis] }) - origin[axis]) * inverse;
+            let near = ((if up { grid.box_min[axis] } else { grid.box_max[axis] }) - origin[axis]) * inverse[axis];
+            let far = ((if up { grid.box_max[axis] } else { grid.box_min[axis] }) - origin[axis]) * inverse[axis];
             entry = max_f32(entry, near);
             leave = min_f32(leave, far);
         }
@@ -102,6 +105,7 @@ pub fn move_ray(ray: &Ray, grid: &GridHeader) -> Option<MovedRay> {
     let mut moved = MovedRay {
         origin,
         direction,
+        inverse,
         s_min: first - start,
         s_max: last - start,
         start,
@@ -111,7 +115,7 @@ pub fn move_ray(ray: &Ray, grid: &GridHeader) -> Option<MovedRay> {
         z_is_y,
     };
     let permuted = moved.permute(direction);
-    let inverse_z = 1.0 / permuted[2];
+    let inverse_z = moved.permute(inverse)[2];
     moved.shear = [permuted[0] * inverse_z, permuted[1] * inverse_z, inverse_z];
     Some(moved)
 }

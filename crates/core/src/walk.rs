@@ -76,8 +76,6 @@ pub struct Walk {
     pub ray: MovedRay,
     /// The ray's origin, seen from the grid's lower corner.
     pub from_low: Vec3,
-    /// Of the direction; 0 where that is 0.
-    pub inverse: Vec3,
     /// s where a coordinate is 0; beyond any where the direction is 0.
     pub at_zero: Vec3,
     /// Whether the direction is positive.
@@ -131,7 +129,7 @@ impl Walk {
     /// s of these boundaries.
     fn boundaries(&self, header: &GridHeader) -> Vec3 {
         let edges = boundary(header.box_min, header.fine_cell_size, self.edge().map(|i| i as f32));
-        add(mul(edges, self.inverse), self.at_zero)
+        add(mul(edges, self.ray.inverse), self.at_zero)
     }
 }
 
@@ -185,7 +183,6 @@ pub fn walk_nowhere(ray: MovedRay) -> Walk {
     Walk {
         ray,
         from_low: [0.0; 3],
-        inverse: [0.0; 3],
         at_zero: [0.0; 3],
         up: [false; 3],
         cell: [0; 3],
@@ -204,12 +201,9 @@ pub fn walk_nowhere(ray: MovedRay) -> Walk {
 
 /// At the ray's first cell. Only for a grid of at least one cell.
 pub fn walk_begin(grid: &Grid, ray: MovedRay) -> Walk {
-    let still = ray.direction.map(|x| x == 0.0);
-    let inverse: Vec3 = std::array::from_fn(|axis| if still[axis] { 0.0 } else { 1.0 / ray.direction[axis] });
     let mut walk = Walk {
         from_low: sub(ray.origin, grid.header.box_min),
-        inverse,
-        at_zero: std::array::from_fn(|axis| if still[axis] { BEYOND } else { -ray.origin[axis] * inverse[axis] }),
+        at_zero: std::array::from_fn(|axis| if ray.direction[axis] == 0.0 { BEYOND } else { -ray.origin[axis] * ray.inverse[axis] }),
         up: ray.direction.map(|x| x > 0.0),
         ..walk_nowhere(ray)
     };

@@ -163,6 +163,7 @@ uint gridwalk_cell_id(uvec3 cell, uvec3 resolution) { return cell.x + resolution
 struct GridwalkMovedRay {
     vec3 origin;
     vec3 direction;
+    vec3 inverse; // of the direction; 0 where that is 0
     float s_min;
     float s_max;
     // t = (start + s) * t_of_s.x * t_of_s.y: two powers of two, each representable where their product may not be.
@@ -185,14 +186,20 @@ precise float gridwalk_power_of_two(int e) { return uintBitsToFloat(uint(e + 127
 // floor(log2(x)) for normal x > 0, clamped so that the power of two and its inverse are normal numbers.
 int gridwalk_clamped_exponent(float x) { return clamp(int((floatBitsToUint(x) >> 23) & 255u) - 127, -126, 126); }
 
-bool gridwalk_is_finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
+bool gridwalk_is_finite(vec3 v) { return all(lessThan(abs(v), vec3(GRIDWALK_INFINITY))); }
+
+precise vec3 gridwalk_select(bvec3 which, vec3 yes, vec3 no) {
+    return vec3(which.x ? yes.x : no.x, which.y ? yes.y : no.y, which.z ? yes.z : no.z);
+}
 
 precise vec3 gridwalk_permute(GridwalkMovedRay ray, vec3 v) { return ray.z_is_x ? v.yzx : (ray.z_is_y ? v.zxy : v); }
 
 precise GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
     precise GridwalkMovedRay moved;
     precise vec3 magnitude = abs(ray.direction);
-    precise float largest = max(magnitude.x, max(magnitude.y, magnitude.z));
+    moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
+    moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
+    precise float largest = gridwalk_permute(moved, magnitude).z;
     moved.valid = gridwalk_is_finite(ray.origin) && gridwalk_is_finite(ray.direction) && largest > 0.0 && !isnan(ray.t_min) && !isnan(ray.t_max);
     if (!moved.valid) {
         return moved;
@@ -200,29 +207,24 @@ precise GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
     int exponent = gridwalk_clamped_exponent(largest);
     precise float shrink = gridwalk_power_of_two(-exponent);
     precise float grow = gridwalk_power_of_two(exponent);
-    bvec3 zero = lessThan(magnitude, vec3(largest * GRIDWALK_NEGLIGIBLE_COMPONENT));
-    precise vec3 direction = vec3(zero.x ? 0.0 : ray.direction.x * shrink, zero.y ? 0.0 : ray.direction.y * shrink,
-                          zero.z ? 0.0 : ray.direction.z * shrink);
+    precise vec3 direction = gridwalk_select(lessThan(magnitude, vec3(largest * GRIDWALK_NEGLIGIBLE_COMPONENT)), vec3(0.0), ray.direction * shrink);
+    bvec3 still = equal(direction, vec3(0.0));
+    precise vec3 inverse = gridwalk_select(still, vec3(0.0), 1.0 / direction);
     precise vec3 origin = gridwalk_to_frame(grid, ray.origin);
     moved.t_of_s = vec2(grid.inverse_scale, shrink);
     precise float first = ray.t_min * grow * grid.scale;
     precise float last = ray.t_max * grow * grid.scale;
 
     // The interval of the box, and the tests of the axes along which the ray does not move.
-    precise float entry = -GRIDWALK_INFINITY;
-    precise float leave = GRIDWALK_INFINITY;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (direction[axis] == 0.0) {
-            moved.valid = moved.valid && origin[axis] >= grid.box_min[axis] && origin[axis] <= grid.box_max[axis];
-        } else {
-            precise float inverse = 1.0 / direction[axis];
-            bool up = direction[axis] > 0.0;
-            precise float near = ((up ? grid.box_min[axis] : grid.box_max[axis]) - origin[axis]) * inverse;
-            precise float far = ((up ? grid.box_max[axis] : grid.box_min[axis]) - origin[axis]) * inverse;
-            entry = max(entry, near);
-            leave = min(leave, far);
-        }
-    }
+    bvec3 beside = bvec3(uvec3(lessThan(origin, grid.box_min)) | uvec3(greaterThan(origin, grid.box_max)));
+    moved.valid = !any(bvec3(uvec3(still) & uvec3(beside)));
+    bvec3 up = greaterThan(direction, vec3(0.0));
+    precise vec3 to_low = (grid.box_min - origin) * inverse;
+    precise vec3 to_high = (grid.box_max - origin) * inverse;
+    precise vec3 near = gridwalk_select(still, vec3(-GRIDWALK_INFINITY), gridwalk_select(up, to_low, to_high));
+    precise vec3 far = gridwalk_select(still, vec3(GRIDWALK_INFINITY), gridwalk_select(up, to_high, to_low));
+    precise float entry = max(near.x, max(near.y, near.z));
+    precise float leave = min(far.x, min(far.y, far.z));
     // From far away both are rounded by more than the padding; what lies behind the origin is never visited.
     entry -= abs(entry) * GRIDWALK_SLAB_TOLERANCE;
     leave += abs(leave) * GRIDWALK_SLAB_TOLERANCE;
@@ -236,12 +238,10 @@ precise GridwalkMovedRay gridwalk_move_ray(Ray ray, GridwalkGridHeader grid) {
     moved.s_min = first - moved.start;
     moved.s_max = last - moved.start;
 
-    magnitude = abs(direction);
-    moved.z_is_x = magnitude.x >= magnitude.y && magnitude.x >= magnitude.z;
-    moved.z_is_y = !moved.z_is_x && magnitude.y >= magnitude.z;
     moved.direction = direction;
+    moved.inverse = inverse;
     precise vec3 permuted = gridwalk_permute(moved, direction);
-    precise float inverse_z = 1.0 / permuted.z;
+    precise float inverse_z = gridwalk_permute(moved, inverse).z;
     moved.shear = vec3(permuted.x * inverse_z, permuted.y * inverse_z, inverse_z);
     return moved;
 }
@@ -321,7 +321,6 @@ bool gridwalk_intersect_triangle(GridwalkMovedRay ray, GridwalkCorners corners, 
 struct GridwalkWalk {
     GridwalkMovedRay ray;
     vec3 from_low; // the ray's origin, seen from the grid's lower corner
-    vec3 inverse; // of the direction; 0 where that is 0
     vec3 at_zero; // s where a coordinate is 0; beyond any where the direction is 0
     bvec3 up; // the direction is positive
     ivec3 one_up; // 1 where it is, else 0
@@ -349,7 +348,7 @@ ivec3 gridwalk_select(bvec3 which, ivec3 yes, ivec3 no) {
 
 // s of the boundary of the block ahead along each axis.
 precise vec3 gridwalk_walk_boundaries(GridwalkWalk walk, GridwalkGridHeader grid) {
-    return gridwalk_boundary(grid.box_min, grid.fine_cell_size, vec3(walk.edge)) * walk.inverse + walk.at_zero;
+    return gridwalk_boundary(grid.box_min, grid.fine_cell_size, vec3(walk.edge)) * walk.ray.inverse + walk.at_zero;
 }
 
 // Looks at the cell: its list, the block around it, and where the ray leaves that.
@@ -401,12 +400,9 @@ precise vec3 gridwalk_walk_point(GridwalkWalk walk, GridwalkGridHeader grid, flo
 precise GridwalkWalk gridwalk_walk_begin(GridwalkGridHeader grid, GridwalkMovedRay ray) {
     precise GridwalkWalk walk;
     walk.ray = ray;
-    bvec3 still = equal(ray.direction, vec3(0.0));
     walk.up = greaterThan(ray.direction, vec3(0.0));
     walk.one_up = gridwalk_select(walk.up, ivec3(1), ivec3(0));
-    walk.inverse = vec3(still.x ? 0.0 : 1.0 / ray.direction.x, still.y ? 0.0 : 1.0 / ray.direction.y, still.z ? 0.0 : 1.0 / ray.direction.z);
-    precise vec3 at_zero = -ray.origin * walk.inverse;
-    walk.at_zero = vec3(still.x ? GRIDWALK_BEYOND : at_zero.x, still.y ? GRIDWALK_BEYOND : at_zero.y, still.z ? GRIDWALK_BEYOND : at_zero.z);
+    walk.at_zero = gridwalk_select(equal(ray.direction, vec3(0.0)), vec3(GRIDWALK_BEYOND), -ray.origin * ray.inverse);
     walk.from_low = ray.origin - grid.box_min;
     precise vec3 at = min(max(gridwalk_walk_point(walk, grid, 0.0), vec3(0.5)), vec3(grid.resolution << grid.fine_shift) - vec3(0.5));
     walk.cell = gridwalk_whole_below(at);

@@ -74,11 +74,11 @@ bool pass_run(inout Walk walk, GridHeader header, inout float entry, inout float
 }
 
 void main() {
+    GridHeader header = load_header(grid);
     uint index = invocation_index();
     if (index >= queue.header.count || (CONTINUE && walks.walk[index].given_up == 0u)) {
         return;
     }
-    GridHeader header = grid.header;
     MovedRay moved = move_ray(rays.ray[index], header);
     float share = 1.0;
     bool given_up = false;

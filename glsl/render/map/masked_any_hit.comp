@@ -21,12 +21,13 @@ layout(push_constant, std430) uniform MaskedAnyHit {
 #include "render/shared/masked.glsl"
 
 void main() {
+    GridHeader header = load_header(grid);
     uint index = invocation_index();
     if (index >= queue.header.count) {
         return;
     }
     Hit hit;
-    if (masked_walk(index, rays.ray[index], hit)) {
+    if (masked_walk(header, index, rays.ray[index], hit)) {
         occluded.occluded[index] = hit.triangle == GRIDWALK_MISS ? 0u : (hit.triangle == GRIDWALK_UNFINISHED ? hit.triangle : 1u);
     }
 }

@@ -20,12 +20,13 @@ layout(push_constant, std430) uniform MaskedClosestHit {
 #include "render/shared/masked.glsl"
 
 void main() {
+    GridHeader header = load_header(grid);
     uint index = invocation_index();
     if (index >= queue.header.count) {
         return;
     }
     Hit hit;
-    if (masked_walk(index, rays.ray[index], hit)) {
+    if (masked_walk(header, index, rays.ray[index], hit)) {
         hits.hit[index] = hit;
     }
 }

@@ -6,14 +6,13 @@
 #define TRACE_ACCEPT(triangle, u, v) is_solid(scene, triangle, u, v)
 #include "shared/trace.glsl"
 
-// Walks a ray of the queue; false when there is nothing to be written, because an earlier dispatch has finished the walk or a later one
-// will go on with it.
-bool masked_walk(uint index, Ray ray, out Hit hit) {
+// Walks a ray of the queue; the header is by load_header. False when there is nothing to be written, because an earlier dispatch has finished
+// the walk or a later one will go on with it.
+bool masked_walk(GridHeader header, uint index, Ray ray, out Hit hit) {
     hit = Hit(GRIDWALK_INFINITY, 0.0, 0.0, GRIDWALK_MISS);
     if (index >= queue.header.count || (CONTINUE && walks.walk[index].given_up == 0u)) {
         return false;
     }
-    GridHeader header = grid.header;
     MovedRay moved = move_ray(ray, header);
     Counters seen = Counters(0u, 0u, 0u);
     if (moved.valid) {
