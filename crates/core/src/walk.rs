@@ -160,14 +160,19 @@ fn walk_enter(walk: &mut Walk, grid: &Grid) {
         }
         [walk.reference, walk.list_end] = range;
     }
+    if word & (0x0033_0033 << (bit & 10)) == 0 {
+        shift += 1;
+    }
     let reach = brick.distance as i32;
     (walk.low, walk.high) = if reach == 0 {
         let block = walk.cell.map(|i| i >> shift);
-        (std::array::from_fn(|axis| block[axis] - around[0][axis]), std::array::from_fn(|axis| block[axis] + 1 + around[1][axis]))
+        let (low, high): ([i32; 3], [i32; 3]) =
+            (std::array::from_fn(|axis| block[axis] - around[0][axis]), std::array::from_fn(|axis| block[axis] + 1 + around[1][axis]));
+        (low.map(|i| i << shift), high.map(|i| i << shift))
     } else {
-        (at.map(|i| ((i - (reach - 1)) << 2).max(0)), at.map(|i| (i + reach) << 2))
+        let shift = header.fine_shift;
+        (at.map(|i| ((i - (reach - 1)) << 2).max(0) << shift), at.map(|i| (i + reach) << 2 << shift))
     };
-    (walk.low, walk.high) = (walk.low.map(|i| i << shift), walk.high.map(|i| i << shift));
     let [x, y, z] = walk.boundaries(header);
     walk.exit = max_f32(walk.exit, min_f32(x, min_f32(y, z)));
 }

@@ -26,8 +26,9 @@
 #define GRIDWALK_GLSL
 
 // The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), in the moved frame, with jumps
-// across empty space: a step leaves a block of cells. Where a brick holds triangles that is one cell, or of a split cell one leaf cell with all
-// those around that are known to be empty if it is; elsewhere it is all bricks around that are known to be empty.
+// across empty space: a step leaves a block of cells. Where a brick holds triangles that is one cell, or the cell's octant of the brick if that
+// is empty, or of a split cell one leaf cell with all those around that are known to be empty if it is; elsewhere it is all bricks around that
+// are known to be empty.
 //
 // Positions are counted in fine cells: the first level's cells are blocks of 2^fine_shift of them along each axis, the leaf cells of a split
 // cell (Kalojanov, Billeter and Slusallek 2011) smaller blocks.
@@ -379,12 +380,15 @@ void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader gri
         walk.reference = range.x;
         walk.list_end = range.y;
     }
-    int reach = int(brick.distance);
-    // Of a jump the cells' shift is still the first level's.
+    // An octant of the brick, of 2^3 cells, all of which are empty.
+    shift += (word & (0x00330033u << (bit & 10u))) == 0u ? 1 : 0;
     ivec3 next = (ahead >> shift) + walk.one_up;
+    int reach = int(brick.distance);
     // Beyond the grid's upper end nothing is known, and nothing is: the walk ends there. See walk_step for the lower.
     ivec3 beyond = max((at + gridwalk_select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2, ivec3(0));
-    walk.edge = (reach != 0 ? beyond : next) << shift;
+    ivec3 far = beyond << int(grid.fine_shift);
+    ivec3 near = next << shift;
+    walk.edge = reach != 0 ? far : near;
     // As integers: none is below 0 that the maximum does not take.
     ivec3 boundaries = floatBitsToInt(gridwalk_walk_boundaries(walk, grid));
     walk.exit = intBitsToFloat(max(floatBitsToInt(walk.exit), min(boundaries.x, min(boundaries.y, boundaries.z))));
