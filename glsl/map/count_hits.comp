@@ -38,7 +38,7 @@ bool count_run(inout Walk walk, GridHeader header, inout float entry, inout uint
             float s;
             float u;
             float v;
-            bool met = walk_test(walk, header, vertex, s, u, v) && walk_accepts(walk, header, vertex / 3u);
+            bool met = walk_test(walk, header, vertex, s, u, v) && walk_accepts(walk, header, triangle_of(vertex));
             count += uint(met && s > entry && s <= walk.exit);
         }
     }

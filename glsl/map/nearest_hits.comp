@@ -78,7 +78,7 @@ bool nearest_run(inout Search search, inout Walk walk, GridHeader header, Ray ra
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
             uint vertex = walk_take(walk, header);
-            uint triangle = vertex / 3u;
+            uint triangle = triangle_of(vertex);
             float s;
             float u;
             float v;

@@ -18,6 +18,9 @@ layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Ref
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TriangleWordsIn { uvec4 vertex[]; };
 
+// The triangle of a first vertex: a third of it, by the inverse of 3 modulo 2^32, since 3 divides it.
+uint triangle_of(uint vertex) { return vertex * 0xAAAAAAABu; }
+
 const uint CELL_SPLIT = 1u << 31;
 const uint CELL_LEVEL = 7u;
 

@@ -82,8 +82,8 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
         float u;
         float v;
         if (walk_test(candidates.walk, candidates.grid, vertex, candidates.s, u, v)
-            && walk_accepts(candidates.walk, candidates.grid, vertex / 3u)) {
-            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, vertex / 3u);
+            && walk_accepts(candidates.walk, candidates.grid, triangle_of(vertex))) {
+            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle_of(vertex));
             return true;
         }
     } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {

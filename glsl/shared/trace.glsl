@@ -186,7 +186,7 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
                 float s;
                 float u;
                 float v;
-                uint triangle = vertex / 3u;
+                uint triangle = triangle_of(vertex);
                 bool met = meet_triangle(walk.ray, corners, edges, s, u, v) && walk_improves(walk, s, triangle);
                 if (met && (!EXTRAS || walk_accepts(walk, grid, triangle)) && TRACE_ACCEPT(triangle, u, v)) {
                     walk_commit(walk, s, u, v, triangle);

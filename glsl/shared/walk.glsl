@@ -156,7 +156,7 @@ Corners walk_corners(Walk walk, GridHeader grid, uint vertex) {
 }
 
 bool walk_test(Walk walk, GridHeader grid, uint vertex, out float s, out float u, out float v) {
-    return intersect_triangle(walk.ray, walk_corners(walk, grid, vertex), s, u, v) && walk_improves(walk, s, vertex / 3u);
+    return intersect_triangle(walk.ray, walk_corners(walk, grid, vertex), s, u, v) && walk_improves(walk, s, triangle_of(vertex));
 }
 
 // The id of a triangle's geometry, and the triangle's number within it.

@@ -89,6 +89,9 @@ layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Gri
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangles { vec4 vertex[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangleWordsIn { uvec4 vertex[]; };
 
+// The triangle of a first vertex: a third of it, by the inverse of 3 modulo 2^32, since 3 divides it.
+uint gridwalk_triangle_of(uint vertex) { return vertex * 0xAAAAAAABu; }
+
 const uint GRIDWALK_CELL_SPLIT = 1u << 31;
 const uint GRIDWALK_CELL_LEVEL = 7u;
 
@@ -460,7 +463,7 @@ precise GridwalkCorners gridwalk_walk_corners(GridwalkWalk walk, GridwalkGridHea
 }
 
 bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint vertex, precise out float s, precise out float u, precise out float v) {
-    return gridwalk_intersect_triangle(walk.ray, gridwalk_walk_corners(walk, grid, vertex), s, u, v) && gridwalk_walk_improves(walk, s, vertex / 3u);
+    return gridwalk_intersect_triangle(walk.ray, gridwalk_walk_corners(walk, grid, vertex), s, u, v) && gridwalk_walk_improves(walk, s, gridwalk_triangle_of(vertex));
 }
 
 // The id of a triangle's geometry, and the triangle's number within it.
@@ -559,8 +562,8 @@ bool gridwalk_turn(precise inout GridwalkCandidates candidates) {
         precise float u;
         precise float v;
         if (gridwalk_walk_test(candidates.walk, candidates.grid, vertex, candidates.s, u, v)
-            && gridwalk_walk_accepts(candidates.walk, candidates.grid, vertex / 3u)) {
-            candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, vertex / 3u);
+            && gridwalk_walk_accepts(candidates.walk, candidates.grid, gridwalk_triangle_of(vertex))) {
+            candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, gridwalk_triangle_of(vertex));
             return true;
         }
     } else if (gridwalk_walk_is_over(candidates.walk) || !gridwalk_walk_step(candidates.walk, candidates.grid)) {

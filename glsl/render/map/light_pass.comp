@@ -63,7 +63,7 @@ bool pass_run(inout Walk walk, GridHeader header, inout float entry, inout float
             float u;
             float v;
             if (walk_test(walk, header, vertex, s, u, v) && s > entry && s <= walk.exit) {
-                share *= candidate_share(walk, header, vertex / 3u, u, v);
+                share *= candidate_share(walk, header, triangle_of(vertex), u, v);
                 if (share == 0.0) {
                     return true;
                 }
