@@ -6,6 +6,7 @@
 // Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no cell is split.
 
 #include "shared/offsets.glsl"
+#include "shared/split.glsl"
 
 layout(constant_id = 2) const uint MAP_SIZE = 64;
 layout(constant_id = 3) const uint SORT_TILE = 8192;
@@ -49,7 +50,9 @@ void main() {
 
     arguments.arguments.emit = count > 0u ? arguments.arguments.count : uvec4(0u);
     arguments.arguments.cell_ranges = uvec4(split_workgroups((count + RANGE_PAIRS - 1u) / RANGE_PAIRS, MAP_SIZE), 0u);
-    arguments.arguments.distance = count > 0u ? uvec4(split_workgroups(state.state.split_cells, SPLIT_CELLS_EACH), 0u) : uvec4(0u);
+    // Only where some cell is split that far.
+    bool measured = leaf_level(report.report.longest_list, state.state.least_split, MAX_LEVEL) >= LEAST_MEASURED;
+    arguments.arguments.distance = count > 0u && measured ? uvec4(split_workgroups(state.state.split_cells, SPLIT_CELLS_EACH), 0u) : uvec4(0u);
     for (uint pass = 0u; pass < pass_capacity; ++pass) {
         bool used = pass < state.state.pass_count && count > 0u;
         arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, SORT_TILES), 0u) : uvec4(0u);

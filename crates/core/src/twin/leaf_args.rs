@@ -4,6 +4,7 @@ use super::pair_args::{four, pass_groups, scan_tiles};
 use crate::dispatch::split_workgroups;
 use crate::layout::{BuildState, LeafArguments, OVERFLOW_LEAVES, OVERFLOW_PAIRS, Report};
 use crate::shape::Shape;
+use crate::split::{LEAST_MEASURED, MAX_LEVEL, leaf_level};
 
 /// Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no cell is split.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
@@ -34,7 +35,8 @@ pub fn leaf_args(
     report.leaf_pairs = count;
     arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
     arguments.cell_ranges = four(split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
-    arguments.distance = if count > 0 { four(split_workgroups(state.split_cells, shape.measured_cells())) } else { [0; 4] };
+    let measured = leaf_level(report.longest_list, state.least_split, MAX_LEVEL) >= LEAST_MEASURED;
+    arguments.distance = if count > 0 && measured { four(split_workgroups(state.split_cells, shape.measured_cells())) } else { [0; 4] };
     for pass in 0..pass_capacity {
         let at = pass as usize;
         [arguments.sort[at], arguments.table_scan[at]] = pass_groups(shape, state, pass);
