@@ -152,6 +152,36 @@ fn empty_leaf_cells_are_jumped_across() {
     }
 }
 
+/// In a brick of which one corner cell holds triangles, the other octants are crossed at once, and that of the corner cell by cell.
+#[test]
+fn empty_octants_of_a_brick_are_blocks() {
+    let gpu = Gpu::shared();
+    // The grid is [-1, 1]^3 and a little: a triangle in its lowest cell, and points that hold the box open and are in its highest.
+    let low = [[-1.0, -1.0, -1.0], [-0.9, -1.0, -1.0], [-1.0, -0.9, -0.9]];
+    let high = [[1.0, 1.0, 1.0], [0.9, 1.0, 1.0], [1.0, 0.9, 0.9]];
+    let mesh = Mesh::from_triangles(&[low, high]);
+    let built = gpu.build(
+        &mesh,
+        Capacity { triangles: 2, cells: 64, pairs: 64, leaf_cells: 0 },
+        BuildOptions { resolution: Some([4, 4, 4]), ..BuildOptions::default() },
+    );
+    assert_eq!(built.report.cells_in_use, 2, "{:?}", built.report);
+    let copy = built.copy();
+    for axis in 0..3 {
+        for sign in [1.0_f32, -1.0] {
+            // Through two empty octants; through the two cells along an edge of the lowest octant, then an empty one.
+            for (beside, blocks) in [([0.6, -0.6], 2), ([-0.6, -0.4], 3)] {
+                let along: [f32; 3] = std::array::from_fn(|i| if i == axis { sign } else { 0.0 });
+                let origin = std::array::from_fn(|i| if i == axis { -2.0 * sign } else { beside[(i + 2 - axis) % 3] });
+                let ray = ray(origin, along);
+                let (_, counters) = gpu.closest_with(&built, &[ray], &TraceOptions { count: true, ..TraceOptions::default() });
+                let twin = twins::closest(&copy.view(), &ray, None, &mut ());
+                assert_eq!((counters[0][0], twin.counters.steps), (blocks, blocks), "{ray:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_long_way_is_walked() {
     let gpu = Gpu::shared();
