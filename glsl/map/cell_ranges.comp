@@ -22,11 +22,11 @@ layout(push_constant, std430) uniform CellRanges {
 void main() {
     uint begin = invocation_index() * RANGE_PAIRS;
     uint pair_count = state.state.kept_count;
+    uint first = state.state.first_pair;
+    uint first_cell = state.state.first_cell;
     if (begin >= pair_count) {
         return;
     }
-    uint first = state.state.first_pair;
-    uint first_cell = state.state.first_cell;
     uint end = min(begin + RANGE_PAIRS, pair_count);
     uint key = keys.word[first + begin];
     if (begin == 0u) {

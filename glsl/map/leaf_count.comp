@@ -24,6 +24,8 @@ layout(push_constant, std430) uniform LeafCount {
 };
 
 void main() {
+    GridHeader header = load_header(grid);
+    uint first_cell = state.state.first_cell;
     uint index = invocation_index();
     uint total = state.state.offset_count - 1u;
     if (index > total) {
@@ -38,13 +40,13 @@ void main() {
     // Few turns: there are at most 32 leaf cells for each triangle of a list.
     uint leaves = split.level == 0u ? 0u : leaf_count_of(split.level);
     for (uint leaf = place; leaf < leaves; leaf += split.list_length) {
-        cells.range[state.state.first_cell + split.leaf_begin + leaf] = uvec2(0u);
+        cells.range[first_cell + split.leaf_begin + leaf] = uvec2(0u);
     }
     uint vertex = references.vertex[split.list_begin + place];
     vec3 v0 = triangles.vertex[vertex].xyz;
     vec3 v1 = triangles.vertex[vertex + 1u].xyz;
     vec3 v2 = triangles.vertex[vertex + 2u].xyz;
-    GridHeader fine = refined(grid.header, split.level);
+    GridHeader fine = refined(header, split.level);
     LeafBox box = leaf_box(fine, split, v0, v1, v2);
     uint count = box.count;
     uint mask = 0u;

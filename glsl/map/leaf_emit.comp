@@ -29,6 +29,10 @@ layout(push_constant, std430) uniform LeafEmit {
 };
 
 void main() {
+    GridHeader header = load_header(grid);
+    uint first_cell = state.state.first_cell;
+    uint first_pair = state.state.first_pair;
+    bool to_a = writes_a(state.state.pass_count, 0u);
     uint index = invocation_index();
     if (index + 1u >= state.state.offset_count) {
         return;
@@ -40,24 +44,23 @@ void main() {
     if (place == 0u) {
         SplitCell split = split_cells.cell[owner];
         if (split.level != 0u) {
-            cells.range[split.cell] = uvec2(state.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level);
+            cells.range[split.cell] = uvec2(first_cell + split.leaf_begin, CELL_SPLIT | split.level);
         }
     }
     if (mask == 0u && box_word != LARGE_LEAF_BOX) {
         return;
     }
-    bool to_a = writes_a(state.state.pass_count, 0u);
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
     uint vertex = references.vertex[split_cells.cell[owner].list_begin + place];
-    uint pair = state.state.first_pair + offsets.word[index];
+    uint pair = first_pair + offsets.word[index];
     uint leaf_begin = split_cells.cell[owner].leaf_begin;
     if (box_word == LARGE_LEAF_BOX) {
         SplitCell split = split_cells.cell[owner];
         vec3 v0 = triangles.vertex[vertex].xyz;
         vec3 v1 = triangles.vertex[vertex + 1u].xyz;
         vec3 v2 = triangles.vertex[vertex + 2u].xyz;
-        GridHeader fine = refined(grid.header, split.level);
+        GridHeader fine = refined(header, split.level);
         LeafBox box = leaf_box(fine, split, v0, v1, v2);
         SeparatingAxes axes = separating_axes(fine, v0, v1, v2, box.cells.low);
         uvec3 inside = uvec3((1u << split.level) - 1u);

@@ -54,6 +54,7 @@ void mark_bricks(CellBox box, uint count, uvec3 along) {
 }
 
 void main() {
+    GridHeader header = load_header(grid);
     uint triangle = invocation_index();
     uint triangle_count = state.state.triangle_count;
     if (triangle > triangle_count) {
@@ -69,7 +70,6 @@ void main() {
     uint low = 0u;
     uint sizes = 0u;
     if ((first.w & TRIANGLE_DROPPED) == 0u) {
-        GridHeader header = grid.header;
         uvec4 second = triangles.vertex[3u * triangle + 1u];
         uvec4 third = triangles.vertex[3u * triangle + 2u];
         vec3 v0 = to_frame(header, uintBitsToFloat(first.xyz));

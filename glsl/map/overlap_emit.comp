@@ -25,6 +25,9 @@ layout(push_constant, std430) uniform OverlapEmit {
 };
 
 void main() {
+    uvec3 resolution = load_header(grid).resolution;
+    bool to_a = writes_a(state.state.pass_count, 0u);
+    uint pair_count = state.state.pair_count;
     uint triangle = invocation_index();
     if (triangle >= state.state.triangle_count) {
         return;
@@ -36,15 +39,12 @@ void main() {
     uint cell = boxes.word[3u * triangle + 1u];
     uint sizes = boxes.word[3u * triangle + 2u];
     uvec2 size = uvec2(sizes & 0xFFFFu, sizes >> 16u);
-    uvec3 resolution = grid.header.resolution;
     uint to_row = resolution.x - size.x;
     uint to_slice = resolution.x * (resolution.y - size.y);
-    bool to_a = writes_a(state.state.pass_count, 0u);
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
     vec2 inverse = vec2(1.0) / vec2(size);
     uint pair = offsets.word[triangle];
-    uint pair_count = state.state.pair_count;
     for (; mask != 0u && pair < pair_count; mask &= mask - 1u) {
         keys.word[pair] = cell + id_within(uint(findLSB(mask)), inverse, to_row, to_slice);
         values.word[pair] = 3u * triangle;

@@ -45,14 +45,14 @@ uint owner(uint pair, uint triangle_count) {
 }
 
 void main() {
+    GridHeader header = load_header(grid);
+    uint triangle_count = state.state.triangle_count;
+    bool to_a = writes_a(state.state.pass_count, 0u);
     uint first = invocation_index() * PAIRS_EACH;
     uint last = min(first + PAIRS_EACH, state.state.pair_count);
     if (first >= last) {
         return;
     }
-    GridHeader header = grid.header;
-    uint triangle_count = state.state.triangle_count;
-    bool to_a = writes_a(state.state.pass_count, 0u);
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
 

@@ -69,6 +69,10 @@ struct GridHeader {
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkGrid { GridHeader header; };
 
+// To be called before any invocation has returned: a driver that runs on a CPU loads a word once for a subgroup only where it knows all of its
+// invocations to be active, and elsewhere once for each. Kernels that many elements pass through load other words there too.
+GridHeader load_header(GridwalkGrid grid) { return grid.header; }
+
 vec3 to_frame(GridHeader grid, vec3 point) { return (point - grid.middle) * grid.scale; }
 
 // Lower boundary of cell i, upper boundary of cell i - 1. The one function that both the build and the walk use: the walk is watertight

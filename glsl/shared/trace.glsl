@@ -48,10 +48,6 @@ const uint TURNS = 1310u;
 const uint STEPS_EACH_TURN = 4u;
 const uint TESTS_EACH_TURN = 20u;
 
-// To be called before any invocation has returned: a driver that runs on a CPU loads the header once for a subgroup only while it knows all
-// of its invocations to be active, and else a word for each.
-GridHeader load_header(GridwalkGrid grid) { return grid.header; }
-
 struct Counters {
     uint steps; // cells visited
     uint tests; // triangles tested
