@@ -91,13 +91,13 @@ fn too_many_cells() {
     let mesh = soup(3_000, 0.05, 34);
     let needed =
         gpu.build(&mesh, Capacity { triangles: 3_000, cells: 30_000, pairs: 1 << 18, leaf_cells: 0 }, BuildOptions::default()).report;
-    assert_eq!((needed.overflow, needed.density), (0, 8.0));
-    for cells in [0, 1, 2, 63, 1_000, 20_000] {
+    assert_eq!((needed.overflow, needed.density), (0, BuildOptions::DEFAULT_DENSITY));
+    for cells in [0, 1, 2, 63, 1_000, 15_000] {
         let capacity = Capacity { triangles: 3_000, cells, pairs: 1 << 18, leaf_cells: 0 };
         let built = gpu.build(&mesh, capacity, BuildOptions::default());
         assert_eq!(built.report.overflow, OVERFLOW_CELLS, "{cells}");
         assert!(built.report.cells <= cells.max(1), "{cells}: {:?}", built.report);
-        assert!(built.report.density < 8.0, "{cells}: {:?}", built.report);
+        assert!(built.report.density < BuildOptions::DEFAULT_DENSITY, "{cells}: {:?}", built.report);
         check(gpu, &built, &mesh).unwrap_or_else(|error| panic!("{cells} cells: {error}"));
     }
 }
