@@ -3,7 +3,8 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no cell is split.
+// Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no
+// cell is split.
 
 #include "shared/offsets.glsl"
 #include "shared/split.glsl"

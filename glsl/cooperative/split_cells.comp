@@ -3,8 +3,8 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// Writes a record of each cell that is to be split: where its references and its leaf cells begin among those of all split cells; and of
-// which the first reference of each block is.
+// Writes a record of each cell that is to be split: where its references and its leaf cells begin among those of all split cells; and
+// which record holds the first reference of each block.
 
 #include "shared/occupancy.glsl"
 

@@ -7,9 +7,10 @@
 
 #include "shared/types.glsl"
 
-// [begin, end) in the references; {0, 0} for an empty cell, but nothing that counts where its brick is empty. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
-// level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words; {d, 0} for an empty one: all leaf
-// cells of the same cell that are closer than d in the maximum norm are empty, and d = 0 says no more than d = 1.
+// [begin, end) in the references; {0, 0} for an empty cell, but nothing that counts where its brick is empty. A split cell has the index of
+// its first leaf cell instead, and CELL_SPLIT with its level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's
+// cells, in the same words; {d, 0} for an empty one: all leaf cells of the same cell that are closer than d in the maximum norm are empty,
+// and d = 0 says no more than d = 1.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
 // A triangle is referred to by the index of its first vertex: three times its own.
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint vertex[]; };
@@ -86,8 +87,7 @@ vec3 boundary(vec3 box_min, vec3 cell_size, vec3 i) {
 // at a time.
 uvec3 whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
 
-// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below. For x in (-2^23, 0.5) a number
-// that is below 1, mostly another.
+// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below. For larger x a larger number.
 ivec3 whole_below(vec3 x) { return floatBitsToInt(x + vec3(8388607.5)) - ivec3(0x4B000000); }
 
 // Two products that do not wait for each other.

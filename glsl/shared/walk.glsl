@@ -80,7 +80,7 @@ void walk_enter(inout Walk walk, GridHeader grid) {
     shift += (word & (0x00330033u << (bit & 10u))) == 0u ? 1 : 0;
     ivec3 next = (ahead >> shift) + walk.one_up;
     int reach = int(brick.distance);
-    // Beyond the grid's upper end nothing is known, and nothing is: the walk ends there. See walk_step for the lower.
+    // Beyond the grid's upper end nothing is, and the walk ends. Below its lower end there are no cells that the next could be clamped to.
     ivec3 beyond = max((at + select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2, ivec3(0));
     ivec3 far = beyond << int(grid.fine_shift);
     ivec3 near = next << shift;
@@ -123,8 +123,9 @@ bool walk_step(inout Walk walk, GridHeader grid) {
     bool x = boundaries.x <= boundaries.y && boundaries.x <= boundaries.z;
     bool y = !x && boundaries.y <= boundaries.z;
     ivec3 last = walk.edge - walk.one_up;
-    // The last is never below 0, so what is wrong of a point below 0.5 does not count.
-    ivec3 inside = whole_below(walk_point(walk, grid, walk.exit));
+    // Clamped as floats below, since a ray from far away may be anywhere, and a conversion out of range may give anything; above, what is larger
+    // stays larger.
+    ivec3 inside = whole_below(max(walk_point(walk, grid, walk.exit), vec3(0.5)));
     inside = min(max(inside, min(walk.cell, last)), max(walk.cell, last));
     ivec3 beyond = last + 2 * walk.one_up - ivec3(1);
     walk.cell = select(bvec3(x, y, !x && !y), beyond, inside);

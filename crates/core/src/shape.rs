@@ -23,7 +23,7 @@ pub struct Shape {
     /// Keys an invocation of the sort.
     pub sort_keys: u32,
     /// Whether an invocation's keys are a tile of the sort, counted in a private array; otherwise those of a workgroup are, in shared
-    /// memory. 2^`sort_bits` + `sort_keys` <= 16,384 then.
+    /// memory. 2^`sort_bits` + `sort_keys` <= 16,384 then, and no more than 32,768 * `sort_keys` pairs or rays are sorted.
     pub sort_alone: bool,
     /// Pairs an invocation of the emission.
     pub emit_pairs: u32,
@@ -104,6 +104,12 @@ impl Shape {
     /// Keys a tile of the sort.
     pub const fn sort_tile(&self) -> u32 {
         if self.sort_alone { self.sort_keys } else { self.sort_size * self.sort_keys }
+    }
+
+    /// Most pairs or rays that are sorted: where an invocation scans a row of the digit table by itself, it takes a turn for each tile, and
+    /// 32,768 of them keep to the budget of its loops.
+    pub const fn most_sorted(&self) -> u32 {
+        if self.sort_alone { self.sort_tile().saturating_mul(32_768) } else { u32::MAX }
     }
 
     /// Tiles a workgroup of the sort.

@@ -29,7 +29,7 @@ pub struct Grid<'a> {
     pub header: &'a GridHeader,
     /// Bricks of 4^3 cells.
     pub bricks: &'a [Brick],
-    /// Begin and end of each cell's list.
+    /// Begin and end of each cell's list; of cells of empty bricks nothing that counts.
     pub cells: &'a [[u32; 2]],
     /// The lists of all cells: the index of each triangle's first vertex.
     pub references: &'a [u32],
@@ -228,7 +228,7 @@ pub fn walk_step(walk: &mut Walk, grid: &Grid) -> bool {
     } else {
         2
     };
-    let inside = walk_point(walk, grid.header, walk.exit).map(whole_below);
+    let inside = max(walk_point(walk, grid.header, walk.exit), [0.5; 3]).map(whole_below);
     walk.cell = std::array::from_fn(|axis| {
         let (cell, low, high) = (walk.cell[axis], walk.low[axis], walk.high[axis]);
         match (axis == along, walk.up[axis]) {

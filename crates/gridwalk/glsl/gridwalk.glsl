@@ -78,9 +78,10 @@ const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
 
 #endif
 
-// [begin, end) in the references; {0, 0} for an empty cell, but nothing that counts where its brick is empty. A split cell has the index of its first leaf cell instead, and CELL_SPLIT with its
-// level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's cells, in the same words; {d, 0} for an empty one: all leaf
-// cells of the same cell that are closer than d in the maximum norm are empty, and d = 0 says no more than d = 1.
+// [begin, end) in the references; {0, 0} for an empty cell, but nothing that counts where its brick is empty. A split cell has the index of
+// its first leaf cell instead, and CELL_SPLIT with its level: 2^level leaf cells along each axis, x fastest. They lie behind the grid's
+// cells, in the same words; {d, 0} for an empty one: all leaf cells of the same cell that are closer than d in the maximum norm are empty,
+// and d = 0 says no more than d = 1.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer GridwalkCells { uvec2 range[]; };
 // A triangle is referred to by the index of its first vertex: three times its own.
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint vertex[]; };
@@ -157,8 +158,7 @@ precise vec3 gridwalk_boundary(vec3 box_min, vec3 cell_size, vec3 i) {
 // at a time.
 uvec3 gridwalk_whole(vec3 x) { return floatBitsToUint(x + vec3(8388608.0)) & uvec3(0x7FFFFFu); }
 
-// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below. For x in (-2^23, 0.5) a number
-// that is below 1, mostly another.
+// floor(x) for x in [0.5, 2^23 - 0.5], likewise: the nearest to x - 0.5. Of odd whole numbers the one below. For larger x a larger number.
 ivec3 gridwalk_whole_below(vec3 x) { return floatBitsToInt(x + vec3(8388607.5)) - ivec3(0x4B000000); }
 
 // Two products that do not wait for each other.
@@ -391,7 +391,7 @@ void gridwalk_walk_enter(precise inout GridwalkWalk walk, GridwalkGridHeader gri
     shift += (word & (0x00330033u << (bit & 10u))) == 0u ? 1 : 0;
     ivec3 next = (ahead >> shift) + walk.one_up;
     int reach = int(brick.distance);
-    // Beyond the grid's upper end nothing is known, and nothing is: the walk ends there. See walk_step for the lower.
+    // Beyond the grid's upper end nothing is, and the walk ends. Below its lower end there are no cells that the next could be clamped to.
     ivec3 beyond = max((at + gridwalk_select(walk.up, ivec3(reach), ivec3(1 - reach))) << 2, ivec3(0));
     ivec3 far = beyond << int(grid.fine_shift);
     ivec3 near = next << shift;
@@ -434,8 +434,9 @@ bool gridwalk_walk_step(precise inout GridwalkWalk walk, GridwalkGridHeader grid
     bool x = boundaries.x <= boundaries.y && boundaries.x <= boundaries.z;
     bool y = !x && boundaries.y <= boundaries.z;
     ivec3 last = walk.edge - walk.one_up;
-    // The last is never below 0, so what is wrong of a point below 0.5 does not count.
-    ivec3 inside = gridwalk_whole_below(gridwalk_walk_point(walk, grid, walk.exit));
+    // Clamped as floats below, since a ray from far away may be anywhere, and a conversion out of range may give anything; above, what is larger
+    // stays larger.
+    ivec3 inside = gridwalk_whole_below(max(gridwalk_walk_point(walk, grid, walk.exit), vec3(0.5)));
     inside = min(max(inside, min(walk.cell, last)), max(walk.cell, last));
     ivec3 beyond = last + 2 * walk.one_up - ivec3(1);
     walk.cell = gridwalk_select(bvec3(x, y, !x && !y), beyond, inside);

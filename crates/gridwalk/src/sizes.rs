@@ -267,11 +267,11 @@ fn passes_of(keys: u32, shape: &Shape) -> u32 {
     key_bits.div_ceil(shape.sort_bits).min(MAX_PASSES as u32)
 }
 
-pub(crate) fn check_capacity(capacity: &Capacity) -> Result<()> {
+pub(crate) fn check_capacity(capacity: &Capacity, shape: &Shape) -> Result<()> {
     let limits = [
         ("triangles", capacity.triangles, MAX_TRIANGLES),
         ("cells", capacity.cells, MAX_CELLS),
-        ("pairs", capacity.pairs, MAX_PAIRS),
+        ("pairs", capacity.pairs, MAX_PAIRS.min(shape.most_sorted())),
         ("leaf cells", capacity.leaf_cells, MAX_CELLS),
     ];
     match limits.into_iter().find(|(_, given, limit)| given > limit) {

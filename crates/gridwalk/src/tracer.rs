@@ -445,7 +445,7 @@ impl Tracer {
     /// # Errors
     /// [`Error::Capacity`] beyond the library's limits, [`Error::DeviceLimit`] beyond the device's.
     pub fn build_sizes(&self, capacity: &Capacity) -> Result<BuildSizes> {
-        sizes::check_capacity(capacity)?;
+        sizes::check_capacity(capacity, &self.shape)?;
         let limit = self.max_buffer_size;
         let grid = GridLayout::new(capacity).size;
         let scratch = ScratchLayout::new(capacity, &self.shape).size;
@@ -468,7 +468,7 @@ impl Tracer {
     /// # Errors
     /// [`Error::Capacity`], [`Error::DeviceLimit`].
     pub fn trace_scratch_size(&self, max_rays: u32) -> Result<RegionSize> {
-        check_rays(max_rays)?;
+        check_rays(max_rays, MAX_RAYS)?;
         sizes::region_size("trace scratch", TraceLayout::new(max_rays).size, self.max_buffer_size, vk::BufferUsageFlags::INDIRECT_BUFFER)
     }
 
@@ -477,7 +477,7 @@ impl Tracer {
     /// # Errors
     /// [`Error::Capacity`], [`Error::DeviceLimit`].
     pub fn ray_sort_scratch_size(&self, max_rays: u32) -> Result<RegionSize> {
-        check_rays(max_rays)?;
+        check_rays(max_rays, self.shape.most_sorted())?;
         let size = RaySortLayout::new(max_rays, &self.shape).size;
         sizes::region_size("ray sort scratch", size, self.max_buffer_size, vk::BufferUsageFlags::INDIRECT_BUFFER)
     }
@@ -506,7 +506,7 @@ impl Tracer {
     /// timestamps: the queue has them, and the pool holds enough queries from the first on.
     pub unsafe fn cmd_build(&self, cmd: vk::CommandBuffer, info: &BuildInfo) -> Result<()> {
         let BuildInfo { input, capacity, options, .. } = info;
-        sizes::check_capacity(capacity)?;
+        sizes::check_capacity(capacity, &self.shape)?;
         if !(options.density > 0.0 && options.density.is_finite()) {
             return Err(Error::Option { option: "density", value: options.density.to_string(), expected: "a finite number above 0" });
         }
@@ -706,7 +706,7 @@ impl Tracer {
 
     fn trace_regions(&self, grid: vk::DeviceAddress, info: &TraceInfo, hit_size: u64) -> Result<impl Fn(Buffer) -> Region + use<>> {
         let max = info.count.max();
-        check_rays(max)?;
+        check_rays(max, MAX_RAYS)?;
         let layout = TraceLayout::new(max);
         check_address("grid", grid, REGION_ALIGNMENT)?;
         check_region("rays", &info.rays, u64::from(max) * 32, 16)?;
@@ -770,7 +770,7 @@ impl Tracer {
 
     fn ray_sort_regions(&self, grid: vk::DeviceAddress, info: &RaySortInfo) -> Result<impl Fn(Buffer) -> Region + use<>> {
         let max = info.count.max();
-        check_rays(max)?;
+        check_rays(max, self.shape.most_sorted())?;
         let layout = RaySortLayout::new(max, &self.shape);
         check_address("grid", grid, REGION_ALIGNMENT)?;
         check_region("rays", &info.rays, u64::from(max) * 32, 16)?;
@@ -963,9 +963,10 @@ fn ray_inputs(count: &RayCount, ordered: bool) -> RayInputs {
     RayInputs { max: count.max(), indirect: matches!(count, RayCount::Indirect { .. }), ordered }
 }
 
-fn check_rays(max: u32) -> Result<()> {
-    match max > MAX_RAYS {
-        true => Err(Error::Capacity { what: "rays", given: max.into(), limit: MAX_RAYS.into() }),
+fn check_rays(max: u32, limit: u32) -> Result<()> {
+    let limit = limit.min(MAX_RAYS);
+    match max > limit {
+        true => Err(Error::Capacity { what: "rays", given: max.into(), limit: limit.into() }),
         false => Ok(()),
     }
 }

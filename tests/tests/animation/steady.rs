@@ -51,8 +51,8 @@ fn resident() -> Option<i64> {
 
 const FRAMES: u32 = 300;
 
-/// Plays three hundred frames on a device of its own: not a buffer is made after the first round of so many frames. Returns what is in use of the heap and
-/// resident after each frame.
+/// Plays three hundred frames on a device of its own: not a buffer is made after the first round of so many frames. Returns what is in use of
+/// the heap and resident after each frame.
 fn play_long(path: &Path, round: u32, time: impl Fn(u32) -> f64) -> Vec<(i64, i64)> {
     let own = Gpu::new(None);
     let renderer = Renderer::new(&own.context).unwrap();
@@ -97,7 +97,7 @@ fn three_hundred_frames_take_no_more_memory() {
             let text = "[[mesh]]\nsequence = \"key.%04d.obj\"\nfps = 10\nloop = true\n[[mesh]]\nshape = \"box\"\nscale = 0.3\ntranslate = [1, 0, 0]\n";
             play_long(sequence(&keys, text).path(), 20, |frame| f64::from(frame) / 15.0)
         } else {
-            // The two seconds of the clip, again and again.
+            // The two seconds of the clip, again and again: in the first round a cell is split, and the grid makes room for it.
             play_long(&deformed::file().path().join("a.gltf"), 80, |frame| f64::from(frame % 80) / 40.0)
         };
         let line: Vec<String> = memory.iter().map(|(heap, resident)| format!("{heap} {resident}")).collect();

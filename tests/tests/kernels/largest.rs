@@ -1,5 +1,5 @@
-//! Kernels of one workgroup, or of one a row, at the largest sizes that the library admits. lavapipe ends all loops of an invocation, silently, after 65,535
-//! turns: here it would show.
+//! Kernels of one workgroup, or of one a row, at the largest sizes that the library admits. lavapipe ends all loops of an invocation, silently,
+//! after 65,535 turns: here it would show.
 
 use gridwalk::kernels::{BOUNDS_SPINE, TABLE_SCAN};
 use gridwalk::{MAX_PAIRS, MAX_TRIANGLES, Shape};

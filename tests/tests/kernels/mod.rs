@@ -30,7 +30,7 @@ pub const ODD: Shape = Shape {
     reduce_bricks: 3,
     sort_bits: 5,
     sort_size: 64,
-    sort_keys: 7,
+    sort_keys: 37,
     sort_alone: true,
     emit_pairs: 5,
     range_pairs: 3,

@@ -20,6 +20,15 @@ fn capacities_beyond_the_limits() {
         }
     }
     assert!(matches!(tracer.trace_scratch_size(gridwalk::MAX_RAYS + 1), Err(Error::Capacity { what: "rays", .. })));
+
+    // Tiles of 37 keys, of which an invocation of table_scan gets through 32,768.
+    let odd = &Gpu::with_shape(crate::kernels::ODD).tracer;
+    let most = 37 * 32_768;
+    assert!(odd.build_sizes(&Capacity { pairs: most, ..small }).is_ok() && odd.ray_sort_scratch_size(most).is_ok());
+    assert!(
+        matches!(odd.build_sizes(&Capacity { pairs: most + 1, ..small }), Err(Error::Capacity { what: "pairs", limit, .. }) if limit == most.into())
+    );
+    assert!(matches!(odd.ray_sort_scratch_size(most + 1), Err(Error::Capacity { what: "rays", .. })));
 }
 
 /// A size is either given or refused for the device's limit, never wrong by an overflow.

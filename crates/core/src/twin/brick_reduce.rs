@@ -45,7 +45,8 @@ fn brick(grid: &GridHeader, index: u32, used: bool, cells: &[[u32; 2]]) -> (Bric
     (Brick { mask: [mask as u32, (mask >> 32) as u32], longest_list, ..Brick::default() }, occupancy)
 }
 
-/// Which cells of each brick are in use, of those bricks that triangles may lie in; what each tile of bricks adds to the report and gives the second level to do.
+/// Which cells of each brick are in use, of those bricks that triangles may lie in; what each tile of bricks adds to the report and gives the
+/// second level to do.
 pub fn brick_reduce(
     shape: &Shape,
     groups: [u32; 3],

@@ -6,7 +6,8 @@ use crate::layout::{BuildState, LeafArguments, OVERFLOW_LEAVES, OVERFLOW_PAIRS, 
 use crate::shape::Shape;
 use crate::split::{LEAST_MEASURED, MAX_LEVEL, leaf_level};
 
-/// Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no cell is split.
+/// Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no
+/// cell is split.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn leaf_args(
     shape: &Shape,

@@ -7,8 +7,8 @@ use crate::layout::{Brick, BuildState, GridHeader, SplitCell, TileOccupancy};
 use crate::shape::Shape;
 use crate::split::{LEAST_SPLIT, leaf_count_of, leaf_level, owner_shift};
 
-/// Writes a record of each cell that is to be split: with at least the state's `least_split`
-/// triangles; and whose the first reference of each block is.
+/// Writes a record of each cell that is to be split, one with at least the state's `least_split` triangles; and which record holds the first
+/// reference of each block.
 #[allow(clippy::too_many_arguments, reason = "they are the kernel's")]
 pub fn split_cells(
     shape: &Shape,
