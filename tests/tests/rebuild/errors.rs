@@ -23,10 +23,10 @@ fn capacities_beyond_the_limits() {
 
     // Tiles of 37 keys, of which an invocation of table_scan gets through 32,768.
     let odd = &Gpu::with_shape(crate::kernels::ODD).tracer;
-    let most = 37 * 32_768;
+    let most: u32 = 37 * 32_768;
     assert!(odd.build_sizes(&Capacity { pairs: most, ..small }).is_ok() && odd.ray_sort_scratch_size(most).is_ok());
     assert!(
-        matches!(odd.build_sizes(&Capacity { pairs: most + 1, ..small }), Err(Error::Capacity { what: "pairs", limit, .. }) if limit == most.into())
+        matches!(odd.build_sizes(&Capacity { pairs: most + 1, ..small }), Err(Error::Capacity { what: "pairs", limit, .. }) if limit == u64::from(most))
     );
     assert!(matches!(odd.ray_sort_scratch_size(most + 1), Err(Error::Capacity { what: "rays", .. })));
 }
