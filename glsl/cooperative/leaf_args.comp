@@ -6,15 +6,13 @@
 // Scans the counts of the second level's pairs, and turns the number of all into the sizes of the steps that follow. If they do not fit, no
 // cell is split.
 
+#include "shared/leaf_arguments.glsl"
 #include "shared/offsets.glsl"
 #include "shared/split.glsl"
 
-layout(constant_id = 2) const uint MAP_SIZE = 64;
-layout(constant_id = 3) const uint SORT_TILE = 8192;
-layout(constant_id = 4) const uint SORT_TILES = 1; // tiles a workgroup of the sort
-layout(constant_id = 5) const uint SPLIT_CELLS_EACH = 1; // split cells a workgroup of leaf_distance
-layout(constant_id = 6) const uint RANGE_PAIRS = 1; // pairs an invocation of cell_ranges
-layout(constant_id = 7) const uint TABLE_ROWS = 1; // rows of the digit table a workgroup of table_scan
+layout(constant_id = 7) const uint SPLIT_CELLS_EACH = 1; // split cells a workgroup of leaf_distance
+layout(constant_id = 8) const uint SORT_SIZE = 8; // invocations a workgroup of leaf_sort
+layout(constant_id = 9) const uint LEAF_RUN = 0; // work of an invocation of leaf_sort; 0: all pairs are sorted together
 
 layout(push_constant, std430) uniform LeafArgs {
     StateInOut state; // of the second level
@@ -36,7 +34,6 @@ void main() {
     }
     bool fits = total <= pair_capacity - state.state.first_pair;
     uint count = fits ? total : 0u;
-    uint tiles = (count + SORT_TILE - 1u) / SORT_TILE;
     state.state.pair_total = total;
     state.state.pair_count = count;
     state.state.kept_count = count;
@@ -49,14 +46,16 @@ void main() {
     }
     report.report.leaf_pairs = count;
 
-    arguments.arguments.emit = count > 0u ? arguments.arguments.count : uvec4(0u);
-    arguments.arguments.cell_ranges = uvec4(split_workgroups((count + RANGE_PAIRS - 1u) / RANGE_PAIRS, MAP_SIZE), 0u);
+    write_sort(arguments, LEAF_RUN == 0u ? count : 0u, state.state.pass_count, state.state.digit_bits, pass_capacity);
+    arguments.arguments.emit_large = uvec4(0u);
+    arguments.arguments.leaf_sort = uvec4(0u);
+    if (LEAF_RUN != 0u && count > 0u) {
+        arguments.arguments.emit_large = arguments.arguments.count;
+        // No more than the whole of the work, as leaf_sort reckons it.
+        uint work = count + 2u * (state.state.offset_count - 1u) + report.report.leaf_cells / 8u;
+        arguments.arguments.leaf_sort = uvec4(split_workgroups(work / LEAF_RUN + 1u, SORT_SIZE), 0u);
+    }
     // Only where some cell is split that far.
     bool measured = leaf_level(report.report.longest_list, state.state.least_split, MAX_LEVEL) >= LEAST_MEASURED;
     arguments.arguments.distance = count > 0u && measured ? uvec4(split_workgroups(state.state.split_cells, SPLIT_CELLS_EACH), 0u) : uvec4(0u);
-    for (uint pass = 0u; pass < pass_capacity; ++pass) {
-        bool used = pass < state.state.pass_count && count > 0u;
-        arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, SORT_TILES), 0u) : uvec4(0u);
-        arguments.arguments.table_scan[pass] = used ? uvec4(split_workgroups(1u << state.state.digit_bits, TABLE_ROWS), 0u) : uvec4(0u);
-    }
 }

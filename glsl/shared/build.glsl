@@ -58,6 +58,8 @@ struct LeafArguments {
     uvec4 count;
     uvec4 offsets_scan;
     uvec4 args; // of leaf_args
+    uvec4 emit_large;
+    uvec4 leaf_sort;
     uvec4 emit;
     uvec4 sort[MAX_PASSES];
     uvec4 table_scan[MAX_PASSES];

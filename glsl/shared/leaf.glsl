@@ -55,8 +55,6 @@ LeafBox leaf_box(GridHeader fine, SplitCell split, vec3 v0, vec3 v1, vec3 v2) {
 
 // What the count keeps of a box for the emission: nothing of a large one but that it is one; else its first leaf cell, its sizes less one
 // along x and y, and the level.
-const uint LARGE_LEAF_BOX = 1u << 31;
-
 uint leaf_box_word(LeafBox box, uint level) {
     uvec3 low = box.cells.low & ((1u << level) - 1u);
     uvec3 more = box.cells.high - box.cells.low;

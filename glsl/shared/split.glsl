@@ -41,6 +41,9 @@ struct SplitCell {
     uint z;
 };
 
+// What the count of the second level keeps of a triangle's box of leaf cells where that is a large one.
+const uint LARGE_LEAF_BOX = 1u << 31;
+
 // The split cell that lists the first reference of each block of 2^shift is kept, so that the one of any reference is found among few. There
 // are at most 2^14 blocks, of at least 2^least references.
 uint owner_shift(uint least, uint reference_count) { return max(least, uint(max(findMSB(reference_count), 13) - 13)); }

@@ -220,7 +220,11 @@ pub struct LeafArguments {
     pub offsets_scan: [u32; 4],
     /// Of `leaf_args`, which scans them.
     pub args: [u32; 4],
-    /// Of `leaf_emit`.
+    /// Of `leaf_emit_large`.
+    pub emit_large: [u32; 4],
+    /// Of `leaf_sort`.
+    pub leaf_sort: [u32; 4],
+    /// Of `leaf_emit`; this and those of the sort and of `cell_ranges` are none where `leaf_sort` makes the lists.
     pub emit: [u32; 4],
     /// Of `sort_histogram` and `sort_scatter`, for each pass.
     pub sort: [[u32; 4]; MAX_PASSES],

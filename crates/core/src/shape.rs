@@ -29,6 +29,9 @@ pub struct Shape {
     pub emit_pairs: u32,
     /// Pairs an invocation of `cell_ranges`.
     pub range_pairs: u32,
+    /// Turns that an invocation of `leaf_sort` takes for the split cells before its last, at most 16,000: one for a pair, two for a reference,
+    /// one for eight leaf cells. 0: the pairs of leaf cells are sorted all together.
+    pub leaf_run: u32,
     /// Whether rays load vertices component by component, in the order of their triangle test, not as vectors.
     pub by_component: bool,
 }
@@ -47,6 +50,7 @@ impl Shape {
         sort_alone: true,
         emit_pairs: 64,
         range_pairs: 16,
+        leaf_run: 6000,
         by_component: true,
     };
 
@@ -63,6 +67,7 @@ impl Shape {
         sort_alone: false,
         emit_pairs: 16,
         range_pairs: 1,
+        leaf_run: 0,
         by_component: false,
     };
 
@@ -73,6 +78,7 @@ impl Shape {
         let digits = |bits: u32| 1_u32 << bits;
         sizes.iter().all(|size| (1..=256).contains(size))
             && items.iter().all(|items| (1..=32_767).contains(items))
+            && self.leaf_run <= 16_000
             && self.scan_size.is_power_of_two()
             // Fewer bits need more passes than a plan records.
             && (4..=12).contains(&self.sort_bits)
@@ -176,6 +182,8 @@ impl Shape {
             "SPLIT_CELLS_EACH" => self.measured_cells(),
             "PAIRS_EACH" => self.emit_pairs,
             "RANGE_PAIRS" => self.range_pairs,
+            "SORT_SIZE" => self.sort_size,
+            "LEAF_RUN" => self.leaf_run,
             "BY_COMPONENT" => self.by_component.into(),
             _ => return None,
         })
@@ -184,7 +192,7 @@ impl Shape {
     /// Invocations a workgroup of a kernel whose size is a specialization constant.
     pub fn local_size(&self, kernel: &Kernel) -> u32 {
         match kernel.name {
-            "sort_histogram" | "sort_scatter" => self.sort_size,
+            "sort_histogram" | "sort_scatter" | "leaf_sort" => self.sort_size,
             "bounds_spine" | "brick_reduce" | "gather" | "gather_records" | "geometry_scan" | "report_spine" | "scan_reduce"
             | "pair_args" | "leaf_args" | "split_cells" => self.scan_size,
             "table_scan" => self.table_scan_size(),
@@ -210,6 +218,7 @@ mod tests {
             Shape { emit_pairs: 32_768, ..gpu },
             Shape { range_pairs: 32_768, ..cpu },
             Shape { range_pairs: 0, ..gpu },
+            Shape { leaf_run: 16_001, ..cpu },
             Shape { sort_bits: 3, ..gpu },
             Shape { sort_bits: 32, ..gpu },
             Shape { sort_bits: 6, ..gpu },

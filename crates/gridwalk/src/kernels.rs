@@ -302,9 +302,11 @@ pub static LEAF_ARGS: Kernel = Kernel {
         (2, "MAP_SIZE", 64),
         (3, "SORT_TILE", 8192),
         (4, "SORT_TILES", 1),
-        (5, "SPLIT_CELLS_EACH", 1),
-        (6, "RANGE_PAIRS", 1),
-        (7, "TABLE_ROWS", 1),
+        (5, "RANGE_PAIRS", 1),
+        (6, "TABLE_ROWS", 1),
+        (7, "SPLIT_CELLS_EACH", 1),
+        (8, "SORT_SIZE", 8),
+        (9, "LEAF_RUN", 0),
     ],
 };
 
@@ -368,6 +370,56 @@ pub static LEAF_EMIT: Kernel = Kernel {
         ("cells", Access::Write),
     ],
     spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5)],
+};
+
+/// Kernel `leaf_emit_large`, from `glsl/map/leaf_emit_large.comp`.
+pub static LEAF_EMIT_LARGE: Kernel = Kernel {
+    name: "leaf_emit_large",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/leaf_emit_large.spv"),
+    local_size: [64, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 72,
+    accesses: &[
+        ("grid", Access::Read),
+        ("state", Access::Read),
+        ("split_cells", Access::Read),
+        ("references", Access::Read),
+        ("triangles", Access::Read),
+        ("offsets", Access::Read),
+        ("boxes", Access::Read),
+        ("owners", Access::Read),
+        ("keys", Access::Write),
+    ],
+    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5)],
+};
+
+/// Kernel `leaf_sort`, from `glsl/map/leaf_sort.comp`.
+pub static LEAF_SORT: Kernel = Kernel {
+    name: "leaf_sort",
+    kind: Kind::Map,
+    spirv: spirv!("../spirv/leaf_sort.spv"),
+    local_size: [8, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 72,
+    accesses: &[
+        ("state", Access::Read),
+        ("split_cells", Access::Read),
+        ("offsets", Access::Read),
+        ("masks", Access::Read),
+        ("boxes", Access::Read),
+        ("references", Access::ReadWrite),
+        ("cells", Access::ReadWrite),
+        ("arguments", Access::ReadWrite),
+    ],
+    spec_constants: &[
+        (1, "LEAF_RUN", 6000),
+        (2, "MAP_SIZE", 64),
+        (3, "SORT_TILE", 8192),
+        (4, "SORT_TILES", 1),
+        (5, "RANGE_PAIRS", 1),
+        (6, "TABLE_ROWS", 1),
+    ],
 };
 
 /// Kernel `nearest_hits`, from `glsl/map/nearest_hits.comp`.
@@ -654,6 +706,8 @@ pub static ALL: &[&Kernel] = &[
     &LEAF_COUNT,
     &LEAF_DISTANCE,
     &LEAF_EMIT,
+    &LEAF_EMIT_LARGE,
+    &LEAF_SORT,
     &NEAREST_HITS,
     &OVERLAP_COUNT,
     &OVERLAP_EMIT,
@@ -1209,6 +1263,50 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, cells) == 104);
     assert!(size(|host: &Host| &host.cells) == 8);
     assert!(size_of::<Host>() == 112);
+};
+const _: () = {
+    use crate::push::LeafEmitLarge as Host;
+    assert!(core::mem::offset_of!(Host, grid) == 0);
+    assert!(size(|host: &Host| &host.grid) == 8);
+    assert!(core::mem::offset_of!(Host, state) == 8);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, split_cells) == 16);
+    assert!(size(|host: &Host| &host.split_cells) == 8);
+    assert!(core::mem::offset_of!(Host, references) == 24);
+    assert!(size(|host: &Host| &host.references) == 8);
+    assert!(core::mem::offset_of!(Host, triangles) == 32);
+    assert!(size(|host: &Host| &host.triangles) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 40);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, boxes) == 48);
+    assert!(size(|host: &Host| &host.boxes) == 8);
+    assert!(core::mem::offset_of!(Host, owners) == 56);
+    assert!(size(|host: &Host| &host.owners) == 8);
+    assert!(core::mem::offset_of!(Host, keys) == 64);
+    assert!(size(|host: &Host| &host.keys) == 8);
+    assert!(size_of::<Host>() == 72);
+};
+const _: () = {
+    use crate::push::LeafSort as Host;
+    assert!(core::mem::offset_of!(Host, state) == 0);
+    assert!(size(|host: &Host| &host.state) == 8);
+    assert!(core::mem::offset_of!(Host, split_cells) == 8);
+    assert!(size(|host: &Host| &host.split_cells) == 8);
+    assert!(core::mem::offset_of!(Host, offsets) == 16);
+    assert!(size(|host: &Host| &host.offsets) == 8);
+    assert!(core::mem::offset_of!(Host, masks) == 24);
+    assert!(size(|host: &Host| &host.masks) == 8);
+    assert!(core::mem::offset_of!(Host, boxes) == 32);
+    assert!(size(|host: &Host| &host.boxes) == 8);
+    assert!(core::mem::offset_of!(Host, references) == 40);
+    assert!(size(|host: &Host| &host.references) == 8);
+    assert!(core::mem::offset_of!(Host, cells) == 48);
+    assert!(size(|host: &Host| &host.cells) == 8);
+    assert!(core::mem::offset_of!(Host, arguments) == 56);
+    assert!(size(|host: &Host| &host.arguments) == 8);
+    assert!(core::mem::offset_of!(Host, pass_capacity) == 64);
+    assert!(size(|host: &Host| &host.pass_capacity) == 4);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use crate::push::NearestHits as Host;

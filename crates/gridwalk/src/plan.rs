@@ -517,6 +517,15 @@ fn second_level(plan: &mut Plan, capacity: &Capacity, exact: u32, shape: &Shape)
         push::LeafArgs { state, partials, offsets, arguments, report, pair_capacity, pass_capacity },
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
+    if shape.leaf_run > 0 {
+        let keys = masks;
+        let large = push::LeafEmitLarge { grid, state, split_cells, references, triangles, offsets, boxes, owners, keys };
+        plan.step(Step::new(&LEAF_EMIT_LARGE, leaf_argument(offset_of!(Arguments, emit_large)), large).variant(exact));
+        plan.barrier(Barrier::Shader);
+        let sort = push::LeafSort { state, split_cells, offsets, masks, boxes, references, cells, arguments, pass_capacity, padding: 0 };
+        plan.step(Step::new(&LEAF_SORT, leaf_argument(offset_of!(Arguments, leaf_sort)), sort));
+        plan.barrier(Barrier::ShaderAndIndirect);
+    }
     let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), references);
     let emission = push::LeafEmit {
         grid,

@@ -327,6 +327,37 @@ pub(crate) struct LeafEmit {
     pub(crate) cells: u64,
 }
 
+/// Of kernel `leaf_emit_large`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LeafEmitLarge {
+    pub(crate) grid: u64,
+    pub(crate) state: u64,
+    pub(crate) split_cells: u64,
+    pub(crate) references: u64,
+    pub(crate) triangles: u64,
+    pub(crate) offsets: u64,
+    pub(crate) boxes: u64,
+    pub(crate) owners: u64,
+    pub(crate) keys: u64,
+}
+
+/// Of kernel `leaf_sort`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LeafSort {
+    pub(crate) state: u64,
+    pub(crate) split_cells: u64,
+    pub(crate) offsets: u64,
+    pub(crate) masks: u64,
+    pub(crate) boxes: u64,
+    pub(crate) references: u64,
+    pub(crate) cells: u64,
+    pub(crate) arguments: u64,
+    pub(crate) pass_capacity: u32,
+    pub(crate) padding: u32,
+}
+
 /// Of kernel `leaf_distance`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]

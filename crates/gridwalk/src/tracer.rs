@@ -322,7 +322,7 @@ pub struct Tracer {
 /// Boolean constants of a kernel that differ between its launches, in order of the bits of a step's variant, and the variants in use.
 fn launch_constants(kernel: &'static Kernel) -> (&'static [&'static str], &'static [u32]) {
     match kernel.name {
-        "overlap_count" | "overlap_emit_large" | "leaf_count" | "leaf_emit" => (&["EXACT"], &[0, plan::EXACT]),
+        "overlap_count" | "overlap_emit_large" | "leaf_count" | "leaf_emit" | "leaf_emit_large" => (&["EXACT"], &[0, plan::EXACT]),
         "closest_hit" => (
             &["CONTINUE", "LAST", "RESUME", "COUNT", "EXTRAS"],
             &[0, 1, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15, 16, 17, 19, 20, 21, 23, 24, 25, 27, 28, 29, 31],

@@ -8,6 +8,7 @@ mod configure;
 mod gather;
 mod largest;
 mod leaf_distance;
+mod leaf_sort;
 mod overlap;
 mod pair_args;
 mod ray_sort;
@@ -34,6 +35,7 @@ pub const ODD: Shape = Shape {
     sort_alone: true,
     emit_pairs: 5,
     range_pairs: 3,
+    leaf_run: 100,
     by_component: false,
 };
 
@@ -51,6 +53,7 @@ pub const TINY: Shape = Shape {
     sort_alone: false,
     emit_pairs: 1,
     range_pairs: 1,
+    leaf_run: 0,
     by_component: true,
 };
 

@@ -182,6 +182,7 @@ fn every_step_of_special_builds_is_the_players() {
     let gpu = Gpu::shared();
     let room = Capacity { triangles: 3_000, cells: 5_000, pairs: 90_000, leaf_cells: 100_000 };
     let options = BuildOptions::default();
+    let one_cell = BuildOptions { resolution: Some([1, 1, 1]), ..options };
     let cases = [
         ("empty", soup(0, 0.0, 0), room, options),
         ("one triangle", soup(1, 0.5, 1), room, options),
@@ -190,8 +191,9 @@ fn every_step_of_special_builds_is_the_players() {
         ("too many cells", soup(3_000, 0.05, 3), Capacity { cells: 1_000, ..room }, options),
         ("too many pairs of leaf cells", soup(3_000, 0.2, 2), Capacity { pairs: 50_000, ..room }, options),
         ("split into 32 x 32 x 32", soup(3_000, 0.01, 6), room, BuildOptions { resolution: Some([1, 2, 1]), ..options }),
+        ("a cell with too many pairs for one invocation", soup(2_000, 0.1, 7), Capacity { pairs: 1 << 19, ..room }, one_cell),
         ("fixed", soup(100, 0.3, 4), room, BuildOptions { resolution: Some([7, 30, 2]), ..options }),
-        ("one cell", soup(500, 0.3, 5), room, BuildOptions { resolution: Some([1, 1, 1]), ..options }),
+        ("one cell", soup(500, 0.3, 5), room, one_cell),
     ];
     for (name, mesh, capacity, options) in cases {
         for overlap in [Overlap::Box, Overlap::Exact] {

@@ -129,6 +129,9 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
     let leaf_cells = if report.leaf_pairs > 0 { report.leaf_cells.min(field.ours.grid().capacity().leaf_cells) } else { 0 };
     let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs, leaf_cells };
     let fitted = field.ours.grid().tracer()?.build_sizes(&fitted).map_err(gridwalk_render::Error::from)?;
+    // The second level's pairs pass through the sort only where an invocation does not count them by itself.
+    let alone = field.ours.grid().tracer()?.shape().leaf_run > 0;
+    let sorted = |count: u32| if alone { 0 } else { count.into() };
     let size = Size {
         triangles: report.triangles.into(),
         cells: report.cells.into(),
@@ -136,8 +139,8 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
         written: report.pair_total.into(),
         pairs: report.pairs.into(),
         passes: report.key_bits.div_ceil(field.ours.grid().tracer()?.shape().sort_bits),
-        leaf_cells: report.leaf_cells.into(),
-        leaf_pairs: report.leaf_pairs.into(),
+        leaf_cells: sorted(report.leaf_cells),
+        leaf_pairs: sorted(report.leaf_pairs),
     };
     for step in &mut steps {
         step.bytes = size.step(&step.name, step.count);

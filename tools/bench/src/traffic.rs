@@ -31,7 +31,7 @@ pub struct Size {
     pub pairs: u64,
     /// Passes of the sort over them; further launches sort the pairs of leaf cells.
     pub passes: u32,
-    /// Leaf cells of the second level, and their pairs.
+    /// Leaf cells of the second level, and their pairs, where these are sorted all together.
     pub leaf_cells: u64,
     pub leaf_pairs: u64,
 }

@@ -34,10 +34,20 @@ pub fn leaf_args(
         report.overflow |= OVERFLOW_LEAVES;
     }
     report.leaf_pairs = count;
-    arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
-    arguments.cell_ranges = four(split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
+    write_sort(shape, &BuildState { pair_count: if shape.leaf_run == 0 { count } else { 0 }, ..*state }, arguments, pass_capacity);
+    let alone = shape.leaf_run > 0 && count > 0;
+    arguments.emit_large = if alone { arguments.count } else { [0; 4] };
+    let work = count + 2 * (state.offset_count - 1) + report.leaf_cells / 8;
+    arguments.leaf_sort = if alone { four(split_workgroups(work / shape.leaf_run + 1, shape.sort_size)) } else { [0; 4] };
     let measured = leaf_level(report.longest_list, state.least_split, MAX_LEVEL) >= LEAST_MEASURED;
     arguments.distance = if count > 0 && measured { four(split_workgroups(state.split_cells, shape.measured_cells())) } else { [0; 4] };
+}
+
+/// The sizes of the steps that sort the second level's pairs all together.
+pub(super) fn write_sort(shape: &Shape, state: &BuildState, arguments: &mut LeafArguments, pass_capacity: u32) {
+    let count = state.pair_count;
+    arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
+    arguments.cell_ranges = four(split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
     for pass in 0..pass_capacity {
         let at = pass as usize;
         [arguments.sort[at], arguments.table_scan[at]] = pass_groups(shape, state, pass);

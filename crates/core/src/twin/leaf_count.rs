@@ -1,4 +1,4 @@
-//! Twins of kernels `leaf_count` and `leaf_emit`.
+//! Twins of kernels `leaf_count`, `leaf_emit` and `leaf_emit_large`.
 
 use crate::grid::cell_id;
 use crate::layout::{BuildState, CELL_SPLIT, GridHeader, SplitCell};
@@ -7,7 +7,7 @@ use crate::shape::Shape;
 use crate::split::{leaf_box, leaf_count_of, refined};
 use crate::vector::Vec3;
 
-/// What both kernels read.
+/// What these kernels read.
 #[derive(Clone, Copy, Debug)]
 pub struct Leaves<'a> {
     /// Head of the grid.
@@ -55,7 +55,7 @@ impl Leaves<'_> {
 }
 
 /// What the count keeps of a large box.
-const LARGE_LEAF_BOX: u32 = 1 << 31;
+pub(super) const LARGE_LEAF_BOX: u32 = 1 << 31;
 
 /// What it keeps of a small one: its first leaf cell, its sizes less one along x and y, and the level.
 fn box_word(cells: &CellBox, level: u32) -> u32 {
@@ -110,4 +110,25 @@ pub fn leaf_emit(shape: &Shape, groups: [u32; 3], leaves: &Leaves, references: &
         }
     }
     pairs
+}
+
+/// The leaf cells that triangles with large boxes overlap, where their pairs' keys go.
+pub fn leaf_emit_large(
+    shape: &Shape,
+    groups: [u32; 3],
+    leaves: &Leaves,
+    references: &[u32],
+    offsets: &[u32],
+    boxes: &[u32],
+    keys: &mut [u32],
+) {
+    for reference in leaves.covered(shape, groups).filter(|reference| boxes[*reference as usize] == LARGE_LEAF_BOX) {
+        let Listed { split, place } = leaves.listed(reference);
+        let first = (leaves.state.first_pair + offsets[reference as usize]) as usize;
+        if let Some((cells, all)) = leaves.overlapped(split, references[(split.list_begin + place) as usize]) {
+            for (key, n) in keys[first..].iter_mut().zip(all) {
+                *key = split.leaf_begin + cell_id(cells.cell(n).map(|i| i & ((1 << split.level) - 1)), [1 << split.level; 3]);
+            }
+        }
+    }
 }

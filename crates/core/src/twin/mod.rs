@@ -24,6 +24,7 @@ pub mod interpolate_colours;
 pub mod leaf_args;
 pub mod leaf_count;
 pub mod leaf_distance;
+pub mod leaf_sort;
 pub mod morph;
 pub mod motion;
 pub mod nearest_hits;

@@ -15,8 +15,9 @@ use super::gather::gather;
 use super::gather_records::gather_records;
 use super::geometry_scan::geometry_scan;
 use super::leaf_args::leaf_args;
-use super::leaf_count::{Leaves, leaf_count, leaf_emit};
+use super::leaf_count::{Leaves, leaf_count, leaf_emit, leaf_emit_large};
 use super::leaf_distance::leaf_distance;
+use super::leaf_sort::leaf_sort;
 use super::overlap_count::overlap_count;
 use super::overlap_emit::{Emission, overlap_emit, overlap_emit_large};
 use super::pair_args::pair_args;
@@ -282,7 +283,7 @@ impl Memory {
                 let (partials, offsets) = (&self.scan_partials, &mut self.keys_a);
                 leaf_args(shape, groups, state, partials, offsets, arguments, report, words[0], words[1]);
             }
-            "leaf_count" | "leaf_emit" => {
+            "leaf_count" | "leaf_emit" | "leaf_emit_large" => {
                 let leaves = Leaves {
                     grid: &self.header,
                     state: &self.leaf_state,
@@ -293,6 +294,8 @@ impl Memory {
                 if step.kernel == "leaf_count" {
                     let (counts, masks, boxes) = (&mut self.keys_a, &mut self.keys_b, &mut self.values_a);
                     leaf_count(shape, groups, &leaves, &self.references, counts, masks, boxes, &mut self.cells);
+                } else if step.kernel == "leaf_emit_large" {
+                    leaf_emit_large(shape, groups, &leaves, &self.references, &self.keys_a, &self.values_a, &mut self.keys_b);
                 } else {
                     let pairs = leaf_emit(shape, groups, &leaves, &self.references, &mut self.cells);
                     let (keys, values) = match writes_a(self.leaf_state.pass_count, 0) {
@@ -304,6 +307,12 @@ impl Memory {
                         values[pair] = value;
                     }
                 }
+            }
+            "leaf_sort" => {
+                let (offsets, masks, boxes) = (&self.keys_a, &self.keys_b, &self.values_a);
+                let (state, records, arguments) = (&self.leaf_state, &self.split_cells, &mut self.leaf_arguments);
+                let (references, cells) = (&mut self.references, &mut self.cells);
+                leaf_sort(shape, groups, state, records, offsets, masks, boxes, references, cells, arguments, words[0]);
             }
             "leaf_distance" => leaf_distance(shape, groups, &self.leaf_state, &self.split_cells, &mut self.cells),
             "brick_distance_x" => brick_distance_x(shape, groups, resolution, &self.bricks, &mut self.distances_x),
