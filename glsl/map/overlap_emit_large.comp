@@ -20,7 +20,6 @@ layout(push_constant, std430) uniform OverlapEmitLarge {
     GridwalkGrid grid;
     StateIn state;
     UintsIn offsets;
-    UintsIn boxes;
     Triangles triangles;
     UintsOut keys_a;
     UintsOut keys_b;
@@ -58,11 +57,11 @@ void main() {
 
     uvec3 bricks_along = brick_resolution(header.resolution);
     uint triangle = owner(first, triangle_count);
-    // At most PAIRS_EACH turns of each loop: each triangle that is passed has a pair.
+    uint begin = offsets.word[triangle];
+    uint end = offsets.word[triangle + 1u];
+    // At most PAIRS_EACH turns of each loop: each triangle that is passed has a pair. Those of large boxes are told by their numbers of pairs.
     for (uint pair = first; pair < last;) {
-        uint begin = offsets.word[triangle];
-        uint end = min(offsets.word[triangle + 1u], last);
-        if (boxes.word[3u * triangle] == 0u) {
+        if (end - begin > SMALL_BOX) {
             vec3 v0 = triangles.vertex[3u * triangle].xyz;
             vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
             vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
@@ -73,7 +72,7 @@ void main() {
             uvec3 cell = box.low + uvec3(local - row * size.x, row % size.y, row / size.y);
             bool test = EXACT && !is_row(box);
             SeparatingAxes axes = separating_axes(header, v0, v1, v2, box.low);
-            for (uint i = pair; i < end; ++i) {
+            for (uint i = pair; i < min(end, last); ++i) {
                 bool overlaps = !test || meets(axes, header, cell - box.low);
                 keys.word[i] = overlaps ? cell_id(cell, header.resolution) : header.cell_count;
                 values.word[i] = 3u * triangle;
@@ -82,10 +81,15 @@ void main() {
             }
         }
         pair = end;
-        triangle += 1u;
-        // Across triangles without a cell; a search again if there are many.
-        if (pair < last && offsets.word[triangle + 1u] == pair) {
-            triangle = owner(pair, triangle_count);
+        if (pair < last) {
+            triangle += 1u;
+            end = offsets.word[triangle + 1u];
+            // Across triangles without a cell; a search again if there are many.
+            if (end == pair) {
+                triangle = owner(pair, triangle_count);
+                end = offsets.word[triangle + 1u];
+            }
+            begin = pair;
         }
     }
 }

@@ -48,7 +48,7 @@ impl Shape {
         sort_size: 8,
         sort_keys: 8192,
         sort_alone: true,
-        emit_pairs: 64,
+        emit_pairs: 256,
         range_pairs: 16,
         leaf_run: 6000,
         by_component: true,
@@ -146,6 +146,11 @@ impl Shape {
         if self.sort_alone { self.table_scan_size() } else { 1 }
     }
 
+    /// Bricks of a row whose distances along it an invocation finds.
+    pub const fn distance_run(&self) -> u32 {
+        if self.sort_alone { 16 } else { 4 }
+    }
+
     /// Workgroups that reduce the scene box; at least one, so that an empty scene has a box of no triangle.
     pub const fn bounds_tiles(&self, triangles: u32) -> u32 {
         let tiles = triangles.div_ceil(self.bounds_tile());
@@ -177,6 +182,7 @@ impl Shape {
             "SORT_ALONE" => self.sort_alone.into(),
             "SORT_TILE" => self.sort_tile(),
             "OWNER_SHIFT" => self.owner_shift(),
+            "DISTANCE_RUN" => self.distance_run(),
             "TABLE_ROWS" => self.table_rows(),
             "SORT_TILES" => self.sort_tiles(),
             "SPLIT_CELLS_EACH" => self.measured_cells(),

@@ -65,7 +65,7 @@ pub static BRICK_DISTANCE_X: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("grid", Access::Read), ("bricks", Access::Read), ("distances", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(1, "DISTANCE_RUN", 4)],
 };
 
 /// Kernel `brick_distance_y`, from `glsl/map/brick_distance_y.comp`.
@@ -491,12 +491,11 @@ pub static OVERLAP_EMIT_LARGE: Kernel = Kernel {
     spirv: spirv!("../spirv/overlap_emit_large.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 80,
+    push_constant_size: 72,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
         ("offsets", Access::Read),
-        ("boxes", Access::Read),
         ("triangles", Access::Read),
         ("keys_a", Access::Write),
         ("keys_b", Access::Write),
@@ -1382,21 +1381,19 @@ const _: () = {
     assert!(size(|host: &Host| &host.state) == 8);
     assert!(core::mem::offset_of!(Host, offsets) == 16);
     assert!(size(|host: &Host| &host.offsets) == 8);
-    assert!(core::mem::offset_of!(Host, boxes) == 24);
-    assert!(size(|host: &Host| &host.boxes) == 8);
-    assert!(core::mem::offset_of!(Host, triangles) == 32);
+    assert!(core::mem::offset_of!(Host, triangles) == 24);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, keys_a) == 40);
+    assert!(core::mem::offset_of!(Host, keys_a) == 32);
     assert!(size(|host: &Host| &host.keys_a) == 8);
-    assert!(core::mem::offset_of!(Host, keys_b) == 48);
+    assert!(core::mem::offset_of!(Host, keys_b) == 40);
     assert!(size(|host: &Host| &host.keys_b) == 8);
-    assert!(core::mem::offset_of!(Host, values_a) == 56);
+    assert!(core::mem::offset_of!(Host, values_a) == 48);
     assert!(size(|host: &Host| &host.values_a) == 8);
-    assert!(core::mem::offset_of!(Host, values_b) == 64);
+    assert!(core::mem::offset_of!(Host, values_b) == 56);
     assert!(size(|host: &Host| &host.values_b) == 8);
-    assert!(core::mem::offset_of!(Host, used) == 72);
+    assert!(core::mem::offset_of!(Host, used) == 64);
     assert!(size(|host: &Host| &host.used) == 8);
-    assert!(size_of::<Host>() == 80);
+    assert!(size_of::<Host>() == 72);
 };
 const _: () = {
     use crate::push::PairArgs as Host;

@@ -415,7 +415,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     plan.step(Step::new(&OVERLAP_EMIT, groups.overlap_count, emission));
     // The two write different words, but of the same arrays, and hazards are told by arrays.
     plan.barrier(Barrier::Shader);
-    let emission = push::OverlapEmitLarge { grid, state, offsets, boxes, triangles, keys_a, keys_b, values_a, values_b, used };
+    let emission = push::OverlapEmitLarge { grid, state, offsets, triangles, keys_a, keys_b, values_a, values_b, used };
     plan.step(Step::new(&OVERLAP_EMIT_LARGE, argument(offset_of!(DispatchArguments, emit_large)), emission).variant(exact));
     sort(&mut plan, State, passes, References, |pass| SortGroups {
         sort: argument(offset_of!(DispatchArguments, sort) + 16 * pass),

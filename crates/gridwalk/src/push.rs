@@ -244,7 +244,6 @@ pub(crate) struct OverlapEmitLarge {
     pub(crate) grid: u64,
     pub(crate) state: u64,
     pub(crate) offsets: u64,
-    pub(crate) boxes: u64,
     pub(crate) triangles: u64,
     pub(crate) keys_a: u64,
     pub(crate) keys_b: u64,

@@ -72,7 +72,7 @@ fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f6
     let runs = split_workgroups(pair_count.div_ceil(shape.emit_pairs), shape.map_size);
     gpu.launch(&OVERLAP_EMIT, 0, &memory, &[], groups);
     let (mut used, device_used) = (used.clone(), gpu.upload("used", used));
-    let of_large: Vec<_> = memory.into_iter().chain([&device_used]).collect();
+    let of_large = [&grid, &device_state, &device_offsets, &device_triangles, &a, &b, &c, &d, &device_used];
     gpu.launch(&OVERLAP_EMIT_LARGE, exact.into(), &of_large, &[], runs);
     let count = pair_count as usize;
     let (mut keys, mut values) = (untouched(count), untouched(count));
