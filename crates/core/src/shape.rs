@@ -199,8 +199,8 @@ impl Shape {
     pub fn local_size(&self, kernel: &Kernel) -> u32 {
         match kernel.name {
             "sort_histogram" | "sort_scatter" | "leaf_sort" => self.sort_size,
-            "bounds_spine" | "brick_reduce" | "gather" | "gather_records" | "geometry_scan" | "report_spine" | "scan_reduce"
-            | "pair_args" | "leaf_args" | "split_cells" => self.scan_size,
+            "brick_reduce" | "configure" | "gather" | "gather_records" | "geometry_scan" | "report_spine" | "scan_reduce" | "pair_args"
+            | "leaf_args" | "split_cells" => self.scan_size,
             "table_scan" => self.table_scan_size(),
             _ => self.map_size,
         }

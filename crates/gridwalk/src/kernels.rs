@@ -44,18 +44,6 @@ pub static ANY_HIT: Kernel = Kernel {
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
 };
 
-/// Kernel `bounds_spine`, from `glsl/cooperative/bounds_spine.comp`.
-pub static BOUNDS_SPINE: Kernel = Kernel {
-    name: "bounds_spine",
-    kind: Kind::Cooperative,
-    spirv: spirv!("../spirv/bounds_spine.spv"),
-    local_size: [256, 1, 1],
-    local_size_ids: [Some(0), None, None],
-    push_constant_size: 24,
-    accesses: &[("state", Access::Read), ("partials", Access::Read), ("scene", Access::Write)],
-    spec_constants: &[(1, "BOUNDS_TILE", 2048)],
-};
-
 /// Kernel `brick_distance_x`, from `glsl/map/brick_distance_x.comp`.
 pub static BRICK_DISTANCE_X: Kernel = Kernel {
     name: "brick_distance_x",
@@ -192,16 +180,17 @@ pub static CLOSEST_HIT: Kernel = Kernel {
     spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
 };
 
-/// Kernel `configure`, from `glsl/map/configure.comp`.
+/// Kernel `configure`, from `glsl/cooperative/configure.comp`.
 pub static CONFIGURE: Kernel = Kernel {
     name: "configure",
-    kind: Kind::Map,
+    kind: Kind::Cooperative,
     spirv: spirv!("../spirv/configure.spv"),
-    local_size: [1, 1, 1],
-    local_size_ids: [None, None, None],
-    push_constant_size: 104,
+    local_size: [256, 1, 1],
+    local_size_ids: [Some(0), None, None],
+    push_constant_size: 112,
     accesses: &[
-        ("scene", Access::Read),
+        ("partials", Access::Read),
+        ("scene", Access::Write),
         ("grid", Access::Write),
         ("state", Access::ReadWrite),
         ("arguments", Access::Write),
@@ -211,7 +200,7 @@ pub static CONFIGURE: Kernel = Kernel {
         ("triangles", Access::Read),
         ("bricks", Access::Read),
     ],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "BRICK_TILE", 1024)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "BRICK_TILE", 1024), (4, "BOUNDS_TILE", 2048)],
 };
 
 /// Kernel `count_hits`, from `glsl/map/count_hits.comp`.
@@ -685,7 +674,6 @@ pub static TRACE_CONTINUE_ARGS: Kernel = Kernel {
 /// Every kernel of this crate, in order of name.
 pub static ALL: &[&Kernel] = &[
     &ANY_HIT,
-    &BOUNDS_SPINE,
     &BRICK_DISTANCE_X,
     &BRICK_DISTANCE_Y,
     &BRICK_DISTANCE_Z,
@@ -765,16 +753,6 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, reserved) == 28);
     assert!(size(|host: &Host| &host.reserved) == 4);
     assert!(size_of::<Host>() == 32);
-};
-const _: () = {
-    use crate::push::BoundsSpine as Host;
-    assert!(core::mem::offset_of!(Host, state) == 0);
-    assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, partials) == 8);
-    assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, scene) == 16);
-    assert!(size(|host: &Host| &host.scene) == 8);
-    assert!(size_of::<Host>() == 24);
 };
 const _: () = {
     use gridwalk_core::layout::Brick as Host;
@@ -959,39 +937,41 @@ const _: () = {
 };
 const _: () = {
     use crate::push::Configure as Host;
-    assert!(core::mem::offset_of!(Host, scene) == 0);
+    assert!(core::mem::offset_of!(Host, partials) == 0);
+    assert!(size(|host: &Host| &host.partials) == 8);
+    assert!(core::mem::offset_of!(Host, scene) == 8);
     assert!(size(|host: &Host| &host.scene) == 8);
-    assert!(core::mem::offset_of!(Host, grid) == 8);
+    assert!(core::mem::offset_of!(Host, grid) == 16);
     assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, state) == 16);
+    assert!(core::mem::offset_of!(Host, state) == 24);
     assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, arguments) == 24);
+    assert!(core::mem::offset_of!(Host, arguments) == 32);
     assert!(size(|host: &Host| &host.arguments) == 8);
-    assert!(core::mem::offset_of!(Host, report) == 32);
+    assert!(core::mem::offset_of!(Host, report) == 40);
     assert!(size(|host: &Host| &host.report) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 40);
+    assert!(core::mem::offset_of!(Host, cells) == 48);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(core::mem::offset_of!(Host, references) == 48);
+    assert!(core::mem::offset_of!(Host, references) == 56);
     assert!(size(|host: &Host| &host.references) == 8);
-    assert!(core::mem::offset_of!(Host, triangles) == 56);
+    assert!(core::mem::offset_of!(Host, triangles) == 64);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, bricks) == 64);
+    assert!(core::mem::offset_of!(Host, bricks) == 72);
     assert!(size(|host: &Host| &host.bricks) == 8);
-    assert!(core::mem::offset_of!(Host, cell_capacity) == 72);
+    assert!(core::mem::offset_of!(Host, cell_capacity) == 80);
     assert!(size(|host: &Host| &host.cell_capacity) == 4);
-    assert!(core::mem::offset_of!(Host, density) == 76);
+    assert!(core::mem::offset_of!(Host, density) == 84);
     assert!(size(|host: &Host| &host.density) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_x) == 80);
+    assert!(core::mem::offset_of!(Host, fixed_x) == 88);
     assert!(size(|host: &Host| &host.fixed_x) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_y) == 84);
+    assert!(core::mem::offset_of!(Host, fixed_y) == 92);
     assert!(size(|host: &Host| &host.fixed_y) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_z) == 88);
+    assert!(core::mem::offset_of!(Host, fixed_z) == 96);
     assert!(size(|host: &Host| &host.fixed_z) == 4);
-    assert!(core::mem::offset_of!(Host, levels) == 92);
+    assert!(core::mem::offset_of!(Host, levels) == 100);
     assert!(size(|host: &Host| &host.levels) == 4);
-    assert!(core::mem::offset_of!(Host, exact) == 96);
+    assert!(core::mem::offset_of!(Host, exact) == 104);
     assert!(size(|host: &Host| &host.exact) == 4);
-    assert!(size_of::<Host>() == 104);
+    assert!(size_of::<Host>() == 112);
 };
 const _: () = {
     use crate::push::CountHits as Host;

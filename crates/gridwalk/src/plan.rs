@@ -353,15 +353,10 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
 
     let groups = gather(&mut plan, capacity, inputs.source, shape);
     plan.step(Step::new(
-        &BOUNDS_SPINE,
-        Dispatch::Direct([1, 1, 1]),
-        push::BoundsSpine { state, partials: BoundsPartials.token(), scene: SceneBounds.token() },
-    ));
-    plan.barrier(Barrier::Shader);
-    plan.step(Step::new(
         &CONFIGURE,
         Dispatch::Direct([1, 1, 1]),
         push::Configure {
+            partials: BoundsPartials.token(),
             scene: SceneBounds.token(),
             grid,
             state: State.token(),

@@ -3,15 +3,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Of kernel `bounds_spine`.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct BoundsSpine {
-    pub(crate) state: u64,
-    pub(crate) partials: u64,
-    pub(crate) scene: u64,
-}
-
 /// Of kernel `brick_reduce`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -191,6 +182,7 @@ pub(crate) struct ClosestHit {
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Configure {
+    pub(crate) partials: u64,
     pub(crate) scene: u64,
     pub(crate) grid: u64,
     pub(crate) state: u64,

@@ -1,13 +1,13 @@
 use bytemuck::Zeroable;
-use gridwalk::kernels::{BOUNDS_SPINE, GATHER};
+use gridwalk::kernels::GATHER;
 use gridwalk::split_workgroups;
 use gridwalk_core::gather::tile_bounds;
 use gridwalk_core::layout::{Bounds, BuildState};
-use gridwalk_core::twin::bounds_spine::bounds_spine;
+use gridwalk_core::twin::configure::unite_bounds;
 use gridwalk_tests::gpu::{Gpu, Mesh};
 use gridwalk_tests::meshes::{soup, spoil};
 
-use super::{TINY, assert_same, devices, gathered, many_groups, sizes};
+use super::{TINY, assert_same, devices, gathered, many_groups, sizes, united};
 
 fn check(gpu: &Gpu, mesh: &Mesh, what: &str) {
     let shape = gpu.tracer.shape();
@@ -18,17 +18,15 @@ fn check(gpu: &Gpu, mesh: &Mesh, what: &str) {
     let device_triangles = gpu.guarded("triangles", 48 * u64::from(triangles.max(1)));
     let state = gpu.guarded("state", size_of::<BuildState>() as u64);
     let partials = gpu.guarded("partials", 32 * u64::from(tiles));
-    let scene = gpu.guarded("scene", 32);
     let memory = [&positions, &indices, &device_triangles, &state, &partials];
     gpu.launch(&GATHER, 0, &memory, &[mesh.positions.len() as u32, triangles], split_workgroups(tiles));
-    gpu.launch(&BOUNDS_SPINE, 0, &[&state, &partials, &scene], &[], [1, 1, 1]);
 
     let mut expected = vec![Bounds::zeroed(); tiles as usize];
     tile_bounds(&shape, &gathered(mesh), &mut expected);
     assert_same(&format!("{what}: partials"), &partials.read::<Bounds>(0, tiles as usize), &expected);
     let mut whole = Bounds::EMPTY;
-    bounds_spine(&expected, &mut whole, tiles);
-    assert_same(&format!("{what}: scene"), &scene.read::<Bounds>(0, 1), &[whole]);
+    unite_bounds(&expected, &mut whole, tiles);
+    assert_same(&format!("{what}: scene"), &[united(gpu, &state, &partials)], &[whole]);
 }
 
 #[test]

@@ -1,18 +1,18 @@
 //! Kernels of one workgroup, or of one a row, at the largest sizes that the library admits. lavapipe ends all loops of an invocation, silently,
 //! after 65,535 turns: here it would show.
 
-use gridwalk::kernels::{BOUNDS_SPINE, TABLE_SCAN};
+use gridwalk::kernels::TABLE_SCAN;
 use gridwalk::{MAX_PAIRS, MAX_TRIANGLES, Shape};
 use gridwalk_core::dispatch::split_workgroups;
 use gridwalk_core::gather::gathered_state;
 use gridwalk_core::grid::brick_resolution;
 use gridwalk_core::layout::{Bounds, BuildState, GridHeader, TileOccupancy};
-use gridwalk_core::twin::bounds_spine::bounds_spine;
+use gridwalk_core::twin::configure::unite_bounds;
 use gridwalk_core::twin::table_scan::table_scan;
 use gridwalk_tests::gpu::Gpu;
 use gridwalk_tests::random::Random;
 
-use super::{assert_same, header};
+use super::{assert_same, header, united};
 
 fn devices() -> [&'static Gpu; 2] {
     [Shape::CPU, Shape::GPU].map(Gpu::with_shape)
@@ -46,12 +46,10 @@ fn the_largest_scene_box() {
         let mut corner = || random.point(-1.0, 1.0);
         let boxes: Vec<Bounds> = (0..count).map(|i| Bounds { low: corner(), dropped: i % 3, high: corner(), reserved: 0 }).collect();
         let partials = gpu.upload("partials", &boxes);
-        let scene = gpu.guarded("scene", 32);
         let state = gpu.upload("state", &[gathered_state(MAX_TRIANGLES, MAX_TRIANGLES)]);
-        gpu.launch(&BOUNDS_SPINE, 0, &[&state, &partials, &scene], &[], [1, 1, 1]);
         let mut expected = Bounds::EMPTY;
-        bounds_spine(&boxes, &mut expected, count);
-        assert_same(&format!("{count} tiles, {shape:?}"), &scene.read::<Bounds>(0, 1), &[expected]);
+        unite_bounds(&boxes, &mut expected, count);
+        assert_same(&format!("{count} tiles, {shape:?}"), &[united(gpu, &state, &partials)], &[expected]);
     }
 }
 

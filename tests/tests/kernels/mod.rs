@@ -16,11 +16,12 @@ mod scan;
 mod sort;
 mod steps;
 
-use gridwalk::Shape;
-use gridwalk_core::layout::{Bounds, BuildState, GridHeader};
+use gridwalk::kernels::CONFIGURE;
+use gridwalk::{Report, Shape};
+use gridwalk_core::layout::{Bounds, BuildState, DispatchArguments, GridHeader};
 use gridwalk_core::twin::configure::{Configure, configure_header};
 use gridwalk_core::twin::gather::gather;
-use gridwalk_tests::gpu::{CANARY, Gpu, Mesh};
+use gridwalk_tests::gpu::{CANARY, Gpu, Guarded, Mesh};
 
 /// Neither round numbers nor the defaults.
 pub const ODD: Shape = Shape {
@@ -101,6 +102,16 @@ pub fn gathered(mesh: &Mesh) -> Vec<[f32; 4]> {
     let vertices = mesh.positions.len() as u32;
     gather(&Shape::GPU, groups, positions, indices, &mut triangles, &mut BuildState::default(), &mut partials, vertices, count);
     triangles
+}
+
+/// The scene box that `configure` makes of tiles' boxes.
+pub fn united(gpu: &Gpu, state: &Guarded, partials: &Guarded) -> Bounds {
+    let memory = [32, size_of::<GridHeader>(), size_of::<DispatchArguments>(), size_of::<Report>(), 16, 16, 16, 16];
+    let memory = memory.map(|size| gpu.guarded("written by configure", size as u64));
+    let [scene, grid, arguments, report, cells, references, triangles, bricks] = &memory;
+    let memory = [partials, scene, grid, state, arguments, report, cells, references, triangles, bricks];
+    gpu.launch(&CONFIGURE, 0, &memory, &[1 << 20, 4.0_f32.to_bits(), 0, 0, 0, 2, 1], [1, 1, 1]);
+    scene.read(0, 1)[0]
 }
 
 /// The header that the twin makes for a mesh: good enough to test later steps, and the same for device and twin.

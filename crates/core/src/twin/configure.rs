@@ -5,6 +5,7 @@
 
 use super::pair_args::four;
 use crate::dispatch::split_workgroups;
+use crate::gather::unite;
 use crate::grid::{BRICK_SIZE, brick_resolution};
 use crate::layout::{Bounds, BuildState, DispatchArguments, GridHeader, OVERFLOW_CELLS, Report};
 use crate::shape::Shape;
@@ -36,6 +37,11 @@ pub struct Configure {
     pub splits: bool,
     /// Whether cells that only a triangle's box overlaps get the sentinel key.
     pub exact: bool,
+}
+
+/// The union of the boxes of all tiles: the scene box.
+pub fn unite_bounds(partials: &[Bounds], scene: &mut Bounds, partial_count: u32) {
+    *scene = partials[..partial_count as usize].iter().copied().fold(Bounds::EMPTY, unite);
 }
 
 fn cells_for(relative: Vec3, limit: Vec3, s: f32) -> f32 {

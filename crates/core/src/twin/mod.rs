@@ -3,7 +3,6 @@
 //! rounds down, which every device does alike. The sign of a zero is left open where a minimum or maximum chooses between two.
 
 pub mod any_hit;
-pub mod bounds_spine;
 pub mod brick_distance_x;
 pub mod brick_distance_y;
 pub mod brick_distance_z;

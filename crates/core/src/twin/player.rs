@@ -2,7 +2,6 @@
 
 use bytemuck::{Pod, Zeroable, bytes_of};
 
-use super::bounds_spine::bounds_spine;
 use super::brick_distance_x::brick_distance_x;
 use super::brick_distance_y::brick_distance_y;
 use super::brick_distance_z::brick_distance_z;
@@ -10,7 +9,7 @@ use super::brick_reduce::brick_reduce;
 use super::cell_ranges::cell_ranges;
 use super::clear_bricks::clear_bricks;
 use super::clear_cells::clear_cells;
-use super::configure::{Configure, configure_header, configure_state};
+use super::configure::{Configure, configure_header, configure_state, unite_bounds};
 use super::gather::gather;
 use super::gather_records::gather_records;
 use super::geometry_scan::geometry_scan;
@@ -195,8 +194,8 @@ impl Memory {
                 let (firsts, triangles, partials) = (&self.offsets, &mut self.triangles, &mut self.bounds_partials);
                 gather_records(shape, groups, &self.addressed, &self.records, firsts, triangle_count, triangles, partials);
             }
-            "bounds_spine" => bounds_spine(&self.bounds_partials, &mut self.scene_bounds, shape.bounds_tiles(triangle_count)),
             "configure" => {
+                unite_bounds(&self.bounds_partials, &mut self.scene_bounds, shape.bounds_tiles(triangle_count));
                 let info = Configure {
                     triangle_count,
                     cell_capacity: words[0],

@@ -3,22 +3,22 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-// One invocation turns the scene box, the number of triangles and the density k into the grid's resolution (thesis Equation 3-1) and
-// into the sizes of the steps that depend on it.
+// One workgroup unites the boxes of all tiles of triangles; its first invocation turns the scene box, the number of triangles and the density k
+// into the grid's resolution (thesis Equation 3-1) and into the sizes of the steps that depend on it.
 
-#include "shared/bounds_types.glsl"
+#include "shared/bounds.glsl"
 #include "shared/build.glsl"
 #include "shared/intersect.glsl"
 #include "shared/split.glsl"
 
-layout(local_size_x = 1) in;
-
 layout(constant_id = 1) const uint MAP_SIZE = 64;
 layout(constant_id = 2) const uint SORT_BITS = 10;
 layout(constant_id = 3) const uint BRICK_TILE = 1024;
+layout(constant_id = 4) const uint BOUNDS_TILE = 2048;
 
 layout(push_constant, std430) uniform Configure {
-    BoundsIn scene;
+    BoundsIn partials;
+    BoundsOut scene;
     HeaderOut grid;
     StateInOut state;
     ArgumentsOut arguments;
@@ -89,7 +89,16 @@ float cell_size_for(float low, float high, float count) {
 }
 
 void main() {
-    Bounds bounds = scene.bounds[0];
+    Bounds bounds = empty_bounds();
+    uint partial_count = max((state.state.triangle_count + BOUNDS_TILE - 1u) / BOUNDS_TILE, 1u);
+    for (uint i = gl_LocalInvocationID.x; i < partial_count; i += gl_WorkGroupSize.x) {
+        bounds = unite(bounds, partials.bounds[i]);
+    }
+    bounds = workgroup_bounds(bounds);
+    if (gl_LocalInvocationID.x != 0u) {
+        return;
+    }
+    scene.bounds[0] = bounds;
     BuildState next = state.state;
     uint triangle_count = next.triangle_count;
     bool empty = bounds.dropped == triangle_count;
