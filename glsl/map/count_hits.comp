@@ -34,11 +34,11 @@ bool count_run(inout Walk walk, GridHeader header, inout float entry, inout uint
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
-            uint vertex = walk_take(walk, header);
+            uint row = walk_take(walk, header);
             float s;
             float u;
             float v;
-            bool met = walk_test(walk, header, vertex, s, u, v) && walk_accepts(walk, header, triangle_of(vertex));
+            bool met = walk_test(walk, header, row, s, u, v) && walk_accepts(walk, header, triangle_of(row));
             count += uint(met && s > entry && s <= walk.exit);
         }
     }

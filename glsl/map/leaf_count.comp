@@ -42,10 +42,11 @@ void main() {
     for (uint leaf = place; leaf < leaves; leaf += split.list_length) {
         cells.range[first_cell + split.leaf_begin + leaf] = uvec2(0u);
     }
-    uint vertex = references.vertex[split.list_begin + place];
-    vec3 v0 = triangles.vertex[vertex].xyz;
-    vec3 v1 = triangles.vertex[vertex + 1u].xyz;
-    vec3 v2 = triangles.vertex[vertex + 2u].xyz;
+    uint row = references.row[split.list_begin + place];
+    vec3 v0;
+    vec3 v1;
+    vec3 v2;
+    load_vertices(triangles, row, v0, v1, v2);
     GridHeader fine = refined(header, split.level);
     LeafBox box = leaf_box(fine, split, v0, v1, v2);
     uint count = box.count;

@@ -52,14 +52,15 @@ void main() {
     }
     UintsOut keys = UintsOut(to_a ? uvec2(keys_a) : uvec2(keys_b));
     UintsOut values = UintsOut(to_a ? uvec2(values_a) : uvec2(values_b));
-    uint vertex = references.vertex[split_cells.cell[owner].list_begin + place];
+    uint row = references.row[split_cells.cell[owner].list_begin + place];
     uint pair = first_pair + offsets.word[index];
     uint leaf_begin = split_cells.cell[owner].leaf_begin;
     if (box_word == LARGE_LEAF_BOX) {
         SplitCell split = split_cells.cell[owner];
-        vec3 v0 = triangles.vertex[vertex].xyz;
-        vec3 v1 = triangles.vertex[vertex + 1u].xyz;
-        vec3 v2 = triangles.vertex[vertex + 2u].xyz;
+        vec3 v0;
+        vec3 v1;
+        vec3 v2;
+        load_vertices(triangles, row, v0, v1, v2);
         GridHeader fine = refined(header, split.level);
         LeafBox box = leaf_box(fine, split, v0, v1, v2);
         SeparatingAxes axes = separating_axes(fine, v0, v1, v2, box.cells.low);
@@ -69,7 +70,7 @@ void main() {
             if (!box.test || meets(axes, fine, cell - box.cells.low)) {
                 uvec3 local = cell & inside;
                 keys.word[pair] = leaf_begin + local.x + ((local.y + (local.z << split.level)) << split.level);
-                values.word[pair] = vertex;
+                values.word[pair] = row;
                 pair += 1u;
             }
             cell = next_cell(box.cells, cell);
@@ -82,7 +83,7 @@ void main() {
     vec2 inverse = vec2(1.0) / vec2(size);
     for (; mask != 0u; mask &= mask - 1u) {
         keys.word[pair] = key + id_within(uint(findLSB(mask)), inverse, along - size.x, along * (along - size.y));
-        values.word[pair] = vertex;
+        values.word[pair] = row;
         pair += 1u;
     }
 }

@@ -28,10 +28,11 @@ void main() {
     }
     uint pair = first_pair + offsets.word[index];
     SplitCell split = split_cells.cell[split_cell_of(split_cells, owners, state, index)];
-    uint vertex = references.vertex[split.list_begin + index - split.first_reference];
-    vec3 v0 = triangles.vertex[vertex].xyz;
-    vec3 v1 = triangles.vertex[vertex + 1u].xyz;
-    vec3 v2 = triangles.vertex[vertex + 2u].xyz;
+    uint row = references.row[split.list_begin + index - split.first_reference];
+    vec3 v0;
+    vec3 v1;
+    vec3 v2;
+    load_vertices(triangles, row, v0, v1, v2);
     GridHeader fine = refined(header, split.level);
     LeafBox box = leaf_box(fine, split, v0, v1, v2);
     SeparatingAxes axes = separating_axes(fine, v0, v1, v2, box.cells.low);

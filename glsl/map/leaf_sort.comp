@@ -15,7 +15,7 @@ layout(local_size_x_id = 0) in;
 layout(local_size_x = 8) in;
 layout(constant_id = 1) const uint LEAF_RUN = 6000;
 
-layout(buffer_reference, std430, buffer_reference_align = 4) buffer ReferencesInOut { uint vertex[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer ReferencesInOut { uint row[]; };
 
 layout(push_constant, std430) uniform LeafSort {
     StateIn state; // of the second level
@@ -76,7 +76,7 @@ void pass_by(uint record, uint reference, uint end, uint first_cell, uint first_
     uint cell_end = reference;
     uint leaf_begin = 0u;
     uint to_list = 0u;
-    uint vertex = 0u;
+    uint row = 0u;
     // What is left of the current reference: of a small box, and of a large one.
     uint mask = 0u;
     uint large_count = 0u;
@@ -101,7 +101,7 @@ void pass_by(uint record, uint reference, uint end, uint first_cell, uint first_
                 large_pair = first_pair + before;
             }
             if (emits) {
-                vertex = references.vertex[to_list + reference];
+                row = references.row[to_list + reference];
             }
             uint along = 1u << (box_word >> 25u);
             uvec2 size = (uvec2(box_word >> 15u, box_word >> 20u) & 31u) + uvec2(1u);
@@ -131,9 +131,9 @@ void pass_by(uint record, uint reference, uint end, uint first_cell, uint first_
                 cells.word[2u * b + 1u] = b_end + 1u;
             }
             if (emits) {
-                references.vertex[a_end] = vertex;
+                references.row[a_end] = row;
                 if (two) {
-                    references.vertex[b_end] = vertex;
+                    references.row[b_end] = row;
                 }
             }
         }

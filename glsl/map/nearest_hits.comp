@@ -77,12 +77,12 @@ bool nearest_run(inout Search search, inout Walk walk, GridHeader header, Ray ra
         }
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         while (walk.reference < stop) {
-            uint vertex = walk_take(walk, header);
-            uint triangle = triangle_of(vertex);
+            uint row = walk_take(walk, header);
+            uint triangle = triangle_of(row);
             float s;
             float u;
             float v;
-            bool met = walk_test(walk, header, vertex, s, u, v) && walk_accepts(walk, header, triangle);
+            bool met = walk_test(walk, header, row, s, u, v) && walk_accepts(walk, header, triangle);
             if (met && (s > search.floor_s || (s == search.floor_s && triangle > search.floor_triangle))) {
                 walk_commit(walk, s, u, v, triangle);
             }

@@ -64,20 +64,20 @@ void main() {
         counts.word[triangle] = 0u;
         return;
     }
-    uvec4 first = triangles.vertex[3u * triangle];
+    uvec4 x = triangles.row[3u * triangle];
     uint count = 0u;
     uint mask = 0u;
     uint low = 0u;
     uint sizes = 0u;
-    if ((first.w & TRIANGLE_DROPPED) == 0u) {
-        uvec4 second = triangles.vertex[3u * triangle + 1u];
-        uvec4 third = triangles.vertex[3u * triangle + 2u];
-        vec3 v0 = to_frame(header, uintBitsToFloat(first.xyz));
-        vec3 v1 = to_frame(header, uintBitsToFloat(second.xyz));
-        vec3 v2 = to_frame(header, uintBitsToFloat(third.xyz));
-        triangles.vertex[3u * triangle] = uvec4(floatBitsToUint(v0), first.w);
-        triangles.vertex[3u * triangle + 1u] = uvec4(floatBitsToUint(v1), second.w);
-        triangles.vertex[3u * triangle + 2u] = uvec4(floatBitsToUint(v2), third.w);
+    if ((x.w & TRIANGLE_DROPPED) == 0u) {
+        uvec4 y = triangles.row[3u * triangle + 1u];
+        uvec4 z = triangles.row[3u * triangle + 2u];
+        vec3 v0 = to_frame(header, uintBitsToFloat(uvec3(x.x, y.x, z.x)));
+        vec3 v1 = to_frame(header, uintBitsToFloat(uvec3(x.y, y.y, z.y)));
+        vec3 v2 = to_frame(header, uintBitsToFloat(uvec3(x.z, y.z, z.z)));
+        triangles.row[3u * triangle] = uvec4(floatBitsToUint(vec3(v0.x, v1.x, v2.x)), x.w);
+        triangles.row[3u * triangle + 1u] = uvec4(floatBitsToUint(vec3(v0.y, v1.y, v2.y)), y.w);
+        triangles.row[3u * triangle + 2u] = uvec4(floatBitsToUint(vec3(v0.z, v1.z, v2.z)), z.w);
         CellBox box = triangle_cells(header, v0, v1, v2);
         count = cells_of(box);
         low = cell_id(box.low, header.resolution);

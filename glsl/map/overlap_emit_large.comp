@@ -62,9 +62,10 @@ void main() {
     // At most PAIRS_EACH turns of each loop: each triangle that is passed has a pair. Those of large boxes are told by their numbers of pairs.
     for (uint pair = first; pair < last;) {
         if (end - begin > SMALL_BOX) {
-            vec3 v0 = triangles.vertex[3u * triangle].xyz;
-            vec3 v1 = triangles.vertex[3u * triangle + 1u].xyz;
-            vec3 v2 = triangles.vertex[3u * triangle + 2u].xyz;
+            vec3 v0;
+            vec3 v1;
+            vec3 v2;
+            load_vertices(triangles, 3u * triangle, v0, v1, v2);
             CellBox box = triangle_cells(header, v0, v1, v2);
             uvec3 size = box.high - box.low + uvec3(1u);
             uint local = pair - begin;

@@ -1,4 +1,4 @@
-// Triangles as a build first writes them: in input coordinates, three vertices each, with a word more in each fourth component.
+// Triangles as a build first writes them: in input coordinates, by rows (see shared/grid.glsl).
 #ifndef GATHER_GLSL
 #define GATHER_GLSL
 
@@ -6,8 +6,8 @@
 #include "shared/build.glsl"
 #include "shared/intersect.glsl"
 
-layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer TriangleWordsOut { uvec4 vertex[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer TriangleWordsInOut { uvec4 vertex[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer TriangleWordsOut { uvec4 row[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer TriangleWordsInOut { uvec4 row[]; };
 
 // What of a triangle is the same for all of its geometry.
 struct TriangleWords {
@@ -21,9 +21,9 @@ void write_triangle(TriangleWordsOut triangles, uint triangle, vec3 v0, vec3 v1,
                     inout Bounds bounds) {
     bool dropped = !(is_whole && is_finite(v0) && is_finite(v1) && is_finite(v2));
     uint flags = words.flags | (dropped ? TRIANGLE_DROPPED : 0u);
-    triangles.vertex[3u * triangle] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v0), flags);
-    triangles.vertex[3u * triangle + 1u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v1), words.id);
-    triangles.vertex[3u * triangle + 2u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(v2), words.mask);
+    triangles.row[3u * triangle] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(vec3(v0.x, v1.x, v2.x)), flags);
+    triangles.row[3u * triangle + 1u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(vec3(v0.y, v1.y, v2.y)), words.id);
+    triangles.row[3u * triangle + 2u] = uvec4(dropped ? uvec3(0u) : floatBitsToUint(vec3(v0.z, v1.z, v2.z)), words.mask);
     if (dropped) {
         bounds.dropped += 1u;
     } else {

@@ -12,15 +12,25 @@
 // cells, in the same words; {d, 0} for an empty one: all leaf cells of the same cell that are closer than d in the maximum norm are empty,
 // and d = 0 says no more than d = 1.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Cells { uvec2 range[]; };
-// A triangle is referred to by the index of its first vertex: three times its own.
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint vertex[]; };
-// Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
-// triangle's number in its geometry, the geometry's id, and its mask.
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 vertex[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TriangleWordsIn { uvec4 vertex[]; };
+// A triangle is referred to by the index of its first row: three times its own.
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer References { uint row[]; };
+// Three rows a triangle: the x of its vertices, their y, their z; all zero for a dropped triangle, which no ray hits. The fourth components are
+// words: TRIANGLE_* bits with the triangle's number in its geometry, the geometry's id, and its mask.
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Triangles { vec4 row[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TriangleWordsIn { uvec4 row[]; };
 
-// The triangle of a first vertex: a third of it, by the inverse of 3 modulo 2^32, since 3 divides it.
-uint triangle_of(uint vertex) { return vertex * 0xAAAAAAABu; }
+// The triangle of a first row: a third of it, by the inverse of 3 modulo 2^32, since 3 divides it.
+uint triangle_of(uint row) { return row * 0xAAAAAAABu; }
+
+// Vertices of the triangle whose first row it is.
+void load_vertices(Triangles triangles, uint row, out vec3 v0, out vec3 v1, out vec3 v2) {
+    vec3 x = triangles.row[row].xyz;
+    vec3 y = triangles.row[row + 1u].xyz;
+    vec3 z = triangles.row[row + 2u].xyz;
+    v0 = vec3(x.x, y.x, z.x);
+    v1 = vec3(x.y, y.y, z.y);
+    v2 = vec3(x.z, y.z, z.z);
+}
 
 const uint CELL_SPLIT = 1u << 31;
 const uint CELL_LEVEL = 7u;

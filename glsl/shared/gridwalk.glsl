@@ -78,12 +78,12 @@ bool gridwalk_turn(inout GridwalkCandidates candidates) {
     if (candidates.unfinished) {
         candidates.searching = false;
     } else if (candidates.walk.reference < candidates.walk.list_end) {
-        uint vertex = walk_take(candidates.walk, candidates.grid);
+        uint row = walk_take(candidates.walk, candidates.grid);
         float u;
         float v;
-        if (walk_test(candidates.walk, candidates.grid, vertex, candidates.s, u, v)
-            && walk_accepts(candidates.walk, candidates.grid, triangle_of(vertex))) {
-            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle_of(vertex));
+        if (walk_test(candidates.walk, candidates.grid, row, candidates.s, u, v)
+            && walk_accepts(candidates.walk, candidates.grid, triangle_of(row))) {
+            candidates.hit = Hit(hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, triangle_of(row));
             return true;
         }
     } else if (walk_is_over(candidates.walk) || !walk_step(candidates.walk, candidates.grid)) {

@@ -110,8 +110,15 @@ struct Corners {
     vec3 c;
 };
 
-Corners corners_of(MovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-    return Corners(permute(ray, v0 - ray.origin), permute(ray, v1 - ray.origin), permute(ray, v2 - ray.origin));
+// What the triangle test of a ray has as x, y and z, as `permute` has it.
+uvec3 axes_of(MovedRay ray) { return ray.z_is_x ? uvec3(1u, 2u, 0u) : (ray.z_is_y ? uvec3(2u, 0u, 1u) : uvec3(0u, 1u, 2u)); }
+
+// From the vertices' coordinates along those axes, and the ray's origin's.
+Corners corners_of(vec3 origin, vec3 x, vec3 y, vec3 z) {
+    vec3 from_x = x - vec3(origin.x);
+    vec3 from_y = y - vec3(origin.y);
+    vec3 from_z = z - vec3(origin.z);
+    return Corners(vec3(from_x.x, from_y.x, from_z.x), vec3(from_x.y, from_y.y, from_z.y), vec3(from_x.z, from_y.z, from_z.z));
 }
 
 // Edge functions of a triangle as the ray sees it: of the edges that lie opposite of a, b and c. Those of a shared edge differ in sign alone,

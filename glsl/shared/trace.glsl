@@ -21,7 +21,7 @@ layout(constant_id = 2) const bool LAST = false; // a walk that is given up now 
 layout(constant_id = 3) const bool RESUME = false; // existing hits are to be beaten
 layout(constant_id = 4) const bool COUNT = false;
 layout(constant_id = 5) const bool EXTRAS = false; // masks, culling, geometry ids: what is not asked for costs nothing
-layout(constant_id = 6) const bool BY_COMPONENT = false; // vertices are loaded component by component
+layout(constant_id = 6) const bool BY_TWO = false; // rows of triangles are loaded by two coordinates and one
 
 // Bits of the push constant `launch`, where it stands for the first three.
 const uint LAUNCH_CONTINUE = 1u;
@@ -33,13 +33,6 @@ const uint OPTION_CULL = 3u; // GRIDWALK_CULL_* bits
 const uint OPTION_MASKS = 4u; // each ray has a mask of its own
 const uint OPTION_GEOMETRIES = 8u; // geometry and number within it are written
 const uint OPTION_ORDER = 16u; // rays are traced in the order that is given
-
-// Whether of the next triangle a component is loaded while one is tested, and the line of the cache with it. Rays to a light gain nothing.
-#ifdef TRACE_ANY
-#define LOADS_AHEAD false
-#else
-#define LOADS_AHEAD BY_COMPONENT
-#endif
 
 // A turn walks through empty cells to the next list, then tests triangles of it: so the invocations of a subgroup mostly do the same.
 // lavapipe ends every loop of an invocation, silently, after 65,535 turns in sum over all of its loops and over the divergent paths of
@@ -88,15 +81,29 @@ uint walk_restore(inout Walk walk, GridHeader grid, WalkState saved) {
         index = order.word[place]; \
     }
 
-// Of vertices one component each. The offset is of the vertex in its triangle: as part of the type it needs no addition.
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer FirstVertices { layout(offset = 0) vec4 component[]; };
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer SecondVertices { layout(offset = 16) vec4 component[]; };
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer ThirdVertices { layout(offset = 32) vec4 component[]; };
+// Eight bytes that are loaded at once: an address that is never followed, since that takes no 64-bit integers.
+layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer EightBytes { uvec2 word; };
 
-// Addresses of the vertices' components in the order of a ray's triangle test, and its origin likewise. Drivers that run on a CPU load one
-// component of one invocation at a time anyway, and permute vectors by two blends a component: there this order costs nothing. On a GPU a
-// vector is one load.
-struct Components {
+// Rows of triangles as drivers that run on a CPU load them best: they take a word of one invocation after the other in any case, and of eight
+// bytes at once as long as of four. The third coordinate is loaded alone.
+struct TwoAndOne {
+    EightBytes two;
+    float one;
+    uint word;
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TwoAndOneRows { TwoAndOne row[]; };
+
+vec3 load_row(uvec2 rows, uint row) {
+    if (!BY_TWO) {
+        return Triangles(rows).row[row].xyz;
+    }
+    TwoAndOneRows parts = TwoAndOneRows(rows);
+    return vec3(uintBitsToFloat(uvec2(parts.row[row].two)), parts.row[row].one);
+}
+
+// Addresses of the first triangle's rows in the order of a ray's triangle test, and its origin likewise: so nothing that is loaded has to be
+// permuted.
+struct OrderedRows {
     uvec2 x;
     uvec2 y;
     uvec2 z;
@@ -108,25 +115,21 @@ uvec2 address_plus(uvec2 address, uint bytes) {
     return uvec2(low, address.y + uint(low < bytes));
 }
 
-Components components_of(MovedRay ray, GridHeader grid) {
-    uint x = ray.z_is_x ? 4u : (ray.z_is_y ? 8u : 0u);
-    uint y = ray.z_is_x ? 8u : (ray.z_is_y ? 0u : 4u);
-    uint z = ray.z_is_x ? 0u : (ray.z_is_y ? 4u : 8u);
-    return Components(address_plus(grid.triangles, x), address_plus(grid.triangles, y), address_plus(grid.triangles, z), permute(ray, ray.origin));
+OrderedRows order_rows(MovedRay ray, GridHeader grid) {
+    uvec3 offsets = 16u * axes_of(ray);
+    uvec2 x = address_plus(grid.triangles, offsets.x);
+    uvec2 y = address_plus(grid.triangles, offsets.y);
+    uvec2 z = address_plus(grid.triangles, offsets.z);
+    return OrderedRows(x, y, z, permute(ray, ray.origin));
 }
 
-float load_first_x(Components of, uint vertex) { return FirstVertices(of.x).component[vertex].x; }
-
-Corners load_corners(Components of, uint vertex, float first_x) {
-    vec3 a = vec3(first_x, FirstVertices(of.y).component[vertex].x, FirstVertices(of.z).component[vertex].x);
-    vec3 b = vec3(SecondVertices(of.x).component[vertex].x, SecondVertices(of.y).component[vertex].x, SecondVertices(of.z).component[vertex].x);
-    vec3 c = vec3(ThirdVertices(of.x).component[vertex].x, ThirdVertices(of.y).component[vertex].x, ThirdVertices(of.z).component[vertex].x);
-    return Corners(a - of.origin, b - of.origin, c - of.origin);
+Corners load_corners(OrderedRows rows, uint row) {
+    return corners_of(rows.origin, load_row(rows.x, row), load_row(rows.y, row), load_row(rows.z, row));
 }
 
 // Walks until the end or for TURNS turns; true at the end.
 bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
-    Components components = components_of(walk.ray, grid);
+    OrderedRows rows = order_rows(walk.ray, grid);
     for (uint turn = 0u; turn < TURNS; ++turn) {
         uint steps = 0u;
         while (walk.reference >= walk.list_end && steps < STEPS_EACH_TURN) {
@@ -142,39 +145,18 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
         uint stop = min(walk.list_end, walk.reference + TESTS_EACH_TURN);
         References references = References(grid.references);
         uint ahead = 0u;
-        uint after = 0u;
-        float ahead_x = 0.0;
         if (walk.reference < stop) {
-            ahead = references.vertex[walk.reference];
-            if (LOADS_AHEAD) {
-                ahead_x = load_first_x(components, ahead);
-                after = references.vertex[min(walk.reference + 1u, stop - 1u)];
-            }
+            ahead = references.row[walk.reference];
         }
         while (walk.reference < stop) {
             if (COUNT) {
                 counters.tests += 1u;
             }
             // What the next test begins with is on its way during this one.
-            uint vertex = ahead;
-            float first_x = ahead_x;
+            uint row = ahead;
             walk.reference += 1u;
-            if (LOADS_AHEAD) {
-                ahead = after;
-                ahead_x = load_first_x(components, ahead);
-                after = references.vertex[min(walk.reference + 1u, stop - 1u)];
-            } else {
-                ahead = references.vertex[min(walk.reference, stop - 1u)];
-            }
-            Corners corners;
-            if (BY_COMPONENT) {
-                if (!LOADS_AHEAD) {
-                    first_x = load_first_x(components, vertex);
-                }
-                corners = load_corners(components, vertex, first_x);
-            } else {
-                corners = walk_corners(walk, grid, vertex);
-            }
+            ahead = references.row[min(walk.reference, stop - 1u)];
+            Corners corners = load_corners(rows, row);
             // As walk_test has it, but that all which a hit changes is in the branch that most tests do not take: drivers that run on a CPU pass
             // it by where no invocation of the subgroup takes it.
             vec3 edges = edge_functions(walk.ray, corners);
@@ -182,7 +164,7 @@ bool walk_run(inout Walk walk, GridHeader grid, inout Counters counters) {
                 float s;
                 float u;
                 float v;
-                uint triangle = triangle_of(vertex);
+                uint triangle = triangle_of(row);
                 bool met = meet_triangle(walk.ray, corners, edges, s, u, v) && walk_improves(walk, s, triangle);
                 if (met && (!EXTRAS || walk_accepts(walk, grid, triangle)) && TRACE_ACCEPT(triangle, u, v)) {
                     walk_commit(walk, s, u, v, triangle);

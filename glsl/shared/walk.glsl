@@ -144,26 +144,30 @@ bool walk_improves(Walk walk, float s, uint triangle) {
     return s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle));
 }
 
-// The next of the cell's list, by its first vertex.
+// The next of the cell's list, by its first row.
 uint walk_take(inout Walk walk, GridHeader grid) {
-    uint vertex = References(grid.references).vertex[walk.reference];
+    uint row = References(grid.references).row[walk.reference];
     walk.reference += 1u;
-    return vertex;
+    return row;
 }
 
-Corners walk_corners(Walk walk, GridHeader grid, uint vertex) {
+Corners walk_corners(Walk walk, GridHeader grid, uint row) {
     Triangles triangles = Triangles(grid.triangles);
-    return corners_of(walk.ray, triangles.vertex[vertex].xyz, triangles.vertex[vertex + 1u].xyz, triangles.vertex[vertex + 2u].xyz);
+    uvec3 axes = axes_of(walk.ray);
+    vec3 x = triangles.row[row + axes.x].xyz;
+    vec3 y = triangles.row[row + axes.y].xyz;
+    vec3 z = triangles.row[row + axes.z].xyz;
+    return corners_of(permute(walk.ray, walk.ray.origin), x, y, z);
 }
 
-bool walk_test(Walk walk, GridHeader grid, uint vertex, out float s, out float u, out float v) {
-    return intersect_triangle(walk.ray, walk_corners(walk, grid, vertex), s, u, v) && walk_improves(walk, s, triangle_of(vertex));
+bool walk_test(Walk walk, GridHeader grid, uint row, out float s, out float u, out float v) {
+    return intersect_triangle(walk.ray, walk_corners(walk, grid, row), s, u, v) && walk_improves(walk, s, triangle_of(row));
 }
 
 // The id of a triangle's geometry, and the triangle's number within it.
 uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
     TriangleWordsIn words = TriangleWordsIn(grid.header.triangles);
-    return uvec2(words.vertex[3u * triangle + 1u].w, words.vertex[3u * triangle].w & TRIANGLE_NUMBER);
+    return uvec2(words.row[3u * triangle + 1u].w, words.row[3u * triangle].w & TRIANGLE_NUMBER);
 }
 
 // Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
@@ -178,13 +182,13 @@ bool sees_front(MovedRay ray, Corners corners) {
 // Whether a triangle that the ray's line meets is one that the ray is to hit: by masks and by culling.
 bool walk_accepts(Walk walk, GridHeader grid, uint triangle) {
     TriangleWordsIn words = TriangleWordsIn(grid.triangles);
-    if (walk.mask != 0xFFFFFFFFu && (words.vertex[3u * triangle + 2u].w & walk.mask) == 0u) {
+    if (walk.mask != 0xFFFFFFFFu && (words.row[3u * triangle + 2u].w & walk.mask) == 0u) {
         return false;
     }
     if (walk.cull == 0u) {
         return true;
     }
-    uint flags = words.vertex[3u * triangle].w;
+    uint flags = words.row[3u * triangle].w;
     bool front = sees_front(walk.ray, walk_corners(walk, grid, 3u * triangle));
     front = front != ((flags & TRIANGLE_FLIPPED) != 0u);
     bool culled = (walk.cull & (front ? GRIDWALK_CULL_FRONT : GRIDWALK_CULL_BACK)) != 0u;

@@ -156,15 +156,15 @@ impl Built {
 
     /// The triangles in the lists of all cells, one after another; then in those of all leaf cells.
     pub fn references(&self) -> Vec<u32> {
-        self.first_vertices().into_iter().map(|vertex| vertex / 3).collect()
+        self.first_rows().into_iter().map(|vertex| vertex / 3).collect()
     }
 
     /// Likewise, as the grid has them.
-    fn first_vertices(&self) -> Vec<u32> {
+    fn first_rows(&self) -> Vec<u32> {
         self.grid.read(self.offset(self.header().references), (self.report.pairs + self.report.leaf_pairs) as usize)
     }
 
-    /// Three vertices of four components a triangle, in the grid's frame.
+    /// Three rows a triangle, in the grid's frame.
     pub fn triangles(&self) -> Vec<[[f32; 4]; 3]> {
         let header = self.header();
         self.grid.read(self.offset(header.triangles), header.triangle_count as usize)
@@ -189,14 +189,14 @@ impl Built {
             header: self.header(),
             bricks: self.bricks(),
             cells: self.cells(),
-            references: self.first_vertices(),
+            references: self.first_rows(),
             triangles: self.triangles(),
         }
     }
 
     /// Lists another triangle wherever this one is listed: a grid that is wrong, for negative controls.
     pub fn forget_triangle(&self, victim: u32, instead: u32) {
-        let mut references = self.first_vertices();
+        let mut references = self.first_rows();
         references.iter_mut().filter(|vertex| **vertex == 3 * victim).for_each(|vertex| *vertex = 3 * instead);
         self.grid.write(self.offset(self.header().references), &references);
     }

@@ -29,16 +29,25 @@ pub struct TriangleWords {
     pub mask: u32,
 }
 
-/// A triangle as it lies in memory; all zero if it is dropped.
-pub fn triangle_words(vertices: Option<[Vec3; 3]>, words: TriangleWords) -> [[f32; 4]; 3] {
+/// A triangle as it lies in memory, by rows: x of its vertices, y, z, and a word in each fourth component. All coordinates are zero if it is
+/// dropped.
+pub fn triangle_rows(vertices: Option<[Vec3; 3]>, words: TriangleWords) -> [[f32; 4]; 3] {
     let whole = vertices.filter(|vertices| vertices.iter().all(|vertex| is_finite(*vertex)));
     let flags = words.flags | if whole.is_none() { TRIANGLE_DROPPED } else { 0 };
-    let [a, b, c] = whole.unwrap_or([[0.0; 3]; 3]);
-    let with = |[x, y, z]: Vec3, word: u32| [x, y, z, f32::from_bits(word)];
-    [with(a, flags), with(b, words.id), with(c, words.mask)]
+    rows_of(whole.unwrap_or([[0.0; 3]; 3]), [flags, words.id, words.mask])
 }
 
-/// Whether a triangle in memory was dropped, by its first vertex.
+/// The rows of a triangle with these words.
+pub fn rows_of([a, b, c]: [Vec3; 3], words: [u32; 3]) -> [[f32; 4]; 3] {
+    std::array::from_fn(|axis| [a[axis], b[axis], c[axis], f32::from_bits(words[axis])])
+}
+
+/// The vertices of a triangle that lies in memory.
+pub fn vertices_of([x, y, z]: [[f32; 4]; 3]) -> [Vec3; 3] {
+    std::array::from_fn(|corner| [x[corner], y[corner], z[corner]])
+}
+
+/// Whether a triangle in memory was dropped, by its first row.
 pub fn is_dropped(first: [f32; 4]) -> bool {
     first[3].to_bits() & TRIANGLE_DROPPED != 0
 }
@@ -49,11 +58,11 @@ pub fn unite(a: Bounds, b: Bounds) -> Bounds {
 }
 
 /// The box of a triangle in memory.
-fn triangle_bounds(vertices: &[[f32; 4]]) -> Bounds {
-    if is_dropped(vertices[0]) {
+fn triangle_bounds(rows: &[[f32; 4]]) -> Bounds {
+    if is_dropped(rows[0]) {
         return Bounds { dropped: 1, ..Bounds::EMPTY };
     }
-    let [a, b, c] = [0, 1, 2].map(|corner| [vertices[corner][0], vertices[corner][1], vertices[corner][2]]);
+    let [a, b, c] = vertices_of([rows[0], rows[1], rows[2]]);
     Bounds { low: min(a, min(b, c)), dropped: 0, high: max(a, max(b, c)), reserved: 0 }
 }
 

@@ -22,7 +22,7 @@ pub const CELL_SPLIT: u32 = 1 << 31;
 /// Of the same word: the level, 2^level leaf cells along each axis.
 pub const CELL_LEVEL: u32 = 7;
 
-/// Of the word beside a triangle's first vertex: a vertex is not finite, or an index out of range. Then all its vertices are zero.
+/// Of the word in a triangle's first row: a vertex is not finite, or an index out of range. Then all its vertices are zero.
 pub const TRIANGLE_DROPPED: u32 = 1 << 31;
 /// Of the same word: the triangle's front is where its vertices go round clockwise.
 pub const TRIANGLE_FLIPPED: u32 = 1 << 30;
@@ -57,7 +57,7 @@ pub struct GridHeader {
     pub triangle_count: u32,
     /// Device address of the cell ranges (low word first): begin and end of a list; of an empty leaf cell, how far others are, and 0.
     pub cells: [u32; 2],
-    /// Device address of the references, each the index of a triangle's first vertex.
+    /// Device address of the references, each the index of a triangle's first row.
     pub references: [u32; 2],
     /// Device address of the triangles.
     pub triangles: [u32; 2],

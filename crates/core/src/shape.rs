@@ -32,8 +32,8 @@ pub struct Shape {
     /// Turns that an invocation of `leaf_sort` takes for the split cells before its last, at most 16,000: one for a pair, two for a reference,
     /// one for eight leaf cells. 0: the pairs of leaf cells are sorted all together.
     pub leaf_run: u32,
-    /// Whether rays load vertices component by component, in the order of their triangle test, not as vectors.
-    pub by_component: bool,
+    /// Whether rays load a row of a triangle as two coordinates and one, not as a vector.
+    pub by_two: bool,
 }
 
 impl Shape {
@@ -51,7 +51,7 @@ impl Shape {
         emit_pairs: 256,
         range_pairs: 16,
         leaf_run: 6000,
-        by_component: true,
+        by_two: true,
     };
 
     /// For GPUs.
@@ -68,7 +68,7 @@ impl Shape {
         emit_pairs: 16,
         range_pairs: 1,
         leaf_run: 0,
-        by_component: false,
+        by_two: false,
     };
 
     /// Whether the fields keep to what is said of them: kernels cut otherwise would not fit into shared memory, or give wrong results.
@@ -190,7 +190,7 @@ impl Shape {
             "RANGE_PAIRS" => self.range_pairs,
             "SORT_SIZE" => self.sort_size,
             "LEAF_RUN" => self.leaf_run,
-            "BY_COMPONENT" => self.by_component.into(),
+            "BY_TWO" => self.by_two.into(),
             _ => return None,
         })
     }

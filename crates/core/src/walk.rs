@@ -1,6 +1,7 @@
 //! The walk of a ray along the cells of the grid by 3D-DDA (Amanatides and Woo 1987; thesis section 3.2), as `shared/walk.glsl` and
 //! `shared/trace.glsl` have it: with jumps across bricks that are known to be empty.
 
+use crate::gather::vertices_of;
 use crate::grid::{boundary, brick_resolution, cell_id, cell_of, whole_below};
 use crate::intersect::{Intersection, MovedRay, intersect_triangle};
 use crate::layout::{Brick, CELL_LEVEL, CELL_SPLIT, GridHeader, TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED, WALK_FINE, WalkState};
@@ -31,16 +32,16 @@ pub struct Grid<'a> {
     pub bricks: &'a [Brick],
     /// Begin and end of each cell's list; of cells of empty bricks nothing that counts.
     pub cells: &'a [[u32; 2]],
-    /// The lists of all cells: the index of each triangle's first vertex.
+    /// The lists of all cells: the index of each triangle's first row.
     pub references: &'a [u32],
-    /// Three vertices a triangle, in the grid's frame.
+    /// By rows, in the grid's frame.
     pub triangles: &'a [[[f32; 4]; 3]],
 }
 
 impl Grid<'_> {
     /// The vertices of a triangle, in the grid's frame.
     pub fn triangle(&self, index: u32) -> [Vec3; 3] {
-        self.triangles[index as usize].map(|[x, y, z, _]| [x, y, z])
+        vertices_of(self.triangles[index as usize])
     }
 }
 
@@ -273,7 +274,7 @@ pub fn sees_front(ray: &MovedRay, vertices: [Vec3; 3]) -> bool {
 /// Whether a triangle that the ray's line meets is one that the ray is to hit: by masks and by culling.
 pub fn walk_accepts(walk: &Walk, grid: &Grid, triangle: u32) -> bool {
     let Filter { mask, cull } = walk.filter;
-    let [flags, _, of_geometry] = grid.triangles[triangle as usize].map(|vertex| vertex[3].to_bits());
+    let [flags, _, of_geometry] = grid.triangles[triangle as usize].map(|row| row[3].to_bits());
     if mask != u32::MAX && of_geometry & mask == 0 {
         return false;
     }

@@ -83,15 +83,25 @@ const uint GRIDWALK_UNFINISHED = 0xFFFFFFFEu;
 // cells, in the same words; {d, 0} for an empty one: all leaf cells of the same cell that are closer than d in the maximum norm are empty,
 // and d = 0 says no more than d = 1.
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer GridwalkCells { uvec2 range[]; };
-// A triangle is referred to by the index of its first vertex: three times its own.
-layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint vertex[]; };
-// Three vertices a triangle, all zero for a dropped triangle, which no ray hits. The fourth components are words: TRIANGLE_* bits with the
-// triangle's number in its geometry, the geometry's id, and its mask.
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangles { vec4 vertex[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangleWordsIn { uvec4 vertex[]; };
+// A triangle is referred to by the index of its first row: three times its own.
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer GridwalkReferences { uint row[]; };
+// Three rows a triangle: the x of its vertices, their y, their z; all zero for a dropped triangle, which no ray hits. The fourth components are
+// words: TRIANGLE_* bits with the triangle's number in its geometry, the geometry's id, and its mask.
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangles { vec4 row[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer GridwalkTriangleWordsIn { uvec4 row[]; };
 
-// The triangle of a first vertex: a third of it, by the inverse of 3 modulo 2^32, since 3 divides it.
-uint gridwalk_triangle_of(uint vertex) { return vertex * 0xAAAAAAABu; }
+// The triangle of a first row: a third of it, by the inverse of 3 modulo 2^32, since 3 divides it.
+uint gridwalk_triangle_of(uint row) { return row * 0xAAAAAAABu; }
+
+// Vertices of the triangle whose first row it is.
+void gridwalk_load_vertices(GridwalkTriangles triangles, uint row, precise out vec3 v0, precise out vec3 v1, precise out vec3 v2) {
+    precise vec3 x = triangles.row[row].xyz;
+    precise vec3 y = triangles.row[row + 1u].xyz;
+    precise vec3 z = triangles.row[row + 2u].xyz;
+    v0 = vec3(x.x, y.x, z.x);
+    v1 = vec3(x.y, y.y, z.y);
+    v2 = vec3(x.z, y.z, z.z);
+}
 
 const uint GRIDWALK_CELL_SPLIT = 1u << 31;
 const uint GRIDWALK_CELL_LEVEL = 7u;
@@ -272,8 +282,15 @@ struct GridwalkCorners {
     vec3 c;
 };
 
-precise GridwalkCorners gridwalk_corners_of(GridwalkMovedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-    return GridwalkCorners(gridwalk_permute(ray, v0 - ray.origin), gridwalk_permute(ray, v1 - ray.origin), gridwalk_permute(ray, v2 - ray.origin));
+// What the triangle test of a ray has as x, y and z, as `permute` has it.
+uvec3 gridwalk_axes_of(GridwalkMovedRay ray) { return ray.z_is_x ? uvec3(1u, 2u, 0u) : (ray.z_is_y ? uvec3(2u, 0u, 1u) : uvec3(0u, 1u, 2u)); }
+
+// From the vertices' coordinates along those axes, and the ray's origin's.
+precise GridwalkCorners gridwalk_corners_of(vec3 origin, vec3 x, vec3 y, vec3 z) {
+    precise vec3 from_x = x - vec3(origin.x);
+    precise vec3 from_y = y - vec3(origin.y);
+    precise vec3 from_z = z - vec3(origin.z);
+    return GridwalkCorners(vec3(from_x.x, from_y.x, from_z.x), vec3(from_x.y, from_y.y, from_z.y), vec3(from_x.z, from_y.z, from_z.z));
 }
 
 // Edge functions of a triangle as the ray sees it: of the edges that lie opposite of a, b and c. Those of a shared edge differ in sign alone,
@@ -455,26 +472,30 @@ bool gridwalk_walk_improves(GridwalkWalk walk, float s, uint triangle) {
     return s >= walk.ray.s_min && (s < walk.best_s || (s == walk.best_s && triangle < walk.best_triangle));
 }
 
-// The next of the cell's list, by its first vertex.
+// The next of the cell's list, by its first row.
 uint gridwalk_walk_take(precise inout GridwalkWalk walk, GridwalkGridHeader grid) {
-    uint vertex = GridwalkReferences(grid.references).vertex[walk.reference];
+    uint row = GridwalkReferences(grid.references).row[walk.reference];
     walk.reference += 1u;
-    return vertex;
+    return row;
 }
 
-precise GridwalkCorners gridwalk_walk_corners(GridwalkWalk walk, GridwalkGridHeader grid, uint vertex) {
+precise GridwalkCorners gridwalk_walk_corners(GridwalkWalk walk, GridwalkGridHeader grid, uint row) {
     GridwalkTriangles triangles = GridwalkTriangles(grid.triangles);
-    return gridwalk_corners_of(walk.ray, triangles.vertex[vertex].xyz, triangles.vertex[vertex + 1u].xyz, triangles.vertex[vertex + 2u].xyz);
+    uvec3 axes = gridwalk_axes_of(walk.ray);
+    precise vec3 x = triangles.row[row + axes.x].xyz;
+    precise vec3 y = triangles.row[row + axes.y].xyz;
+    precise vec3 z = triangles.row[row + axes.z].xyz;
+    return gridwalk_corners_of(gridwalk_permute(walk.ray, walk.ray.origin), x, y, z);
 }
 
-bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint vertex, precise out float s, precise out float u, precise out float v) {
-    return gridwalk_intersect_triangle(walk.ray, gridwalk_walk_corners(walk, grid, vertex), s, u, v) && gridwalk_walk_improves(walk, s, gridwalk_triangle_of(vertex));
+bool gridwalk_walk_test(GridwalkWalk walk, GridwalkGridHeader grid, uint row, precise out float s, precise out float u, precise out float v) {
+    return gridwalk_intersect_triangle(walk.ray, gridwalk_walk_corners(walk, grid, row), s, u, v) && gridwalk_walk_improves(walk, s, gridwalk_triangle_of(row));
 }
 
 // The id of a triangle's geometry, and the triangle's number within it.
 uvec2 gridwalk_geometry(GridwalkGrid grid, uint triangle) {
     GridwalkTriangleWordsIn words = GridwalkTriangleWordsIn(grid.header.triangles);
-    return uvec2(words.vertex[3u * triangle + 1u].w, words.vertex[3u * triangle].w & GRIDWALK_TRIANGLE_NUMBER);
+    return uvec2(words.row[3u * triangle + 1u].w, words.row[3u * triangle].w & GRIDWALK_TRIANGLE_NUMBER);
 }
 
 // Whether the ray sees the side of a triangle around which its vertices go counterclockwise. Only for one that the ray's line meets.
@@ -489,13 +510,13 @@ bool gridwalk_sees_front(GridwalkMovedRay ray, GridwalkCorners corners) {
 // Whether a triangle that the ray's line meets is one that the ray is to hit: by masks and by culling.
 bool gridwalk_walk_accepts(GridwalkWalk walk, GridwalkGridHeader grid, uint triangle) {
     GridwalkTriangleWordsIn words = GridwalkTriangleWordsIn(grid.triangles);
-    if (walk.mask != 0xFFFFFFFFu && (words.vertex[3u * triangle + 2u].w & walk.mask) == 0u) {
+    if (walk.mask != 0xFFFFFFFFu && (words.row[3u * triangle + 2u].w & walk.mask) == 0u) {
         return false;
     }
     if (walk.cull == 0u) {
         return true;
     }
-    uint flags = words.vertex[3u * triangle].w;
+    uint flags = words.row[3u * triangle].w;
     bool front = gridwalk_sees_front(walk.ray, gridwalk_walk_corners(walk, grid, 3u * triangle));
     front = front != ((flags & GRIDWALK_TRIANGLE_FLIPPED) != 0u);
     bool culled = (walk.cull & (front ? GRIDWALK_CULL_FRONT : GRIDWALK_CULL_BACK)) != 0u;
@@ -563,12 +584,12 @@ bool gridwalk_turn(precise inout GridwalkCandidates candidates) {
     if (candidates.unfinished) {
         candidates.searching = false;
     } else if (candidates.walk.reference < candidates.walk.list_end) {
-        uint vertex = gridwalk_walk_take(candidates.walk, candidates.grid);
+        uint row = gridwalk_walk_take(candidates.walk, candidates.grid);
         precise float u;
         precise float v;
-        if (gridwalk_walk_test(candidates.walk, candidates.grid, vertex, candidates.s, u, v)
-            && gridwalk_walk_accepts(candidates.walk, candidates.grid, gridwalk_triangle_of(vertex))) {
-            candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, gridwalk_triangle_of(vertex));
+        if (gridwalk_walk_test(candidates.walk, candidates.grid, row, candidates.s, u, v)
+            && gridwalk_walk_accepts(candidates.walk, candidates.grid, gridwalk_triangle_of(row))) {
+            candidates.hit = Hit(gridwalk_hit_distance(candidates.walk.ray, candidates.ray, candidates.s), u, v, gridwalk_triangle_of(row));
             return true;
         }
     } else if (gridwalk_walk_is_over(candidates.walk) || !gridwalk_walk_step(candidates.walk, candidates.grid)) {

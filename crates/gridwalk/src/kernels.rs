@@ -41,7 +41,7 @@ pub static ANY_HIT: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
 };
 
 /// Kernel `brick_distance_x`, from `glsl/map/brick_distance_x.comp`.
@@ -177,7 +177,7 @@ pub static CLOSEST_HIT: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
 };
 
 /// Kernel `configure`, from `glsl/cooperative/configure.comp`.
@@ -220,7 +220,7 @@ pub static COUNT_HITS: Kernel = Kernel {
         ("masks", Access::Read),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
 };
 
 /// Kernel `gather`, from `glsl/cooperative/gather.comp`.
@@ -429,7 +429,7 @@ pub static NEAREST_HITS: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
 };
 
 /// Kernel `overlap_count`, from `glsl/map/overlap_count.comp`.

@@ -197,7 +197,7 @@ pub static LIGHT_PASS: Kernel = Kernel {
         ("passed", Access::Write),
         ("walks", Access::ReadWrite),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
 };
 
 /// Kernel `masked_any_hit`, from `glsl/render/map/masked_any_hit.comp`.
@@ -216,7 +216,7 @@ pub static MASKED_ANY_HIT: Kernel = Kernel {
         ("occluded", Access::Write),
         ("walks", Access::ReadWrite),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
 };
 
 /// Kernel `masked_closest_hit`, from `glsl/render/map/masked_closest_hit.comp`.
@@ -235,7 +235,7 @@ pub static MASKED_CLOSEST_HIT: Kernel = Kernel {
         ("hits", Access::Write),
         ("walks", Access::ReadWrite),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_COMPONENT", 0)],
+    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
 };
 
 /// Kernel `morph`, from `glsl/render/map/morph.comp`.

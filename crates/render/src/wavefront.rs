@@ -84,8 +84,8 @@ const CONTINUATIONS: usize = gridwalk::plan::CONTINUATIONS as usize;
 
 impl Masked {
     fn new(context: &Context, kernel: &'static gridwalk::kernel::Kernel) -> Result<Masked> {
-        let by_component = u32::from(context.is_cpu());
-        let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last), ("BY_COMPONENT", by_component)]);
+        let by_two = u32::from(context.is_cpu());
+        let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last), ("BY_TWO", by_two)]);
         Ok(Masked { first: variant(0, 0)?, again: variant(1, 0)?, last: variant(1, 1)? })
     }
 

@@ -37,7 +37,7 @@ pub const ODD: Shape = Shape {
     emit_pairs: 5,
     range_pairs: 3,
     leaf_run: 100,
-    by_component: false,
+    by_two: false,
 };
 
 /// So small that a few hundred thousand elements fill more than 65,535 workgroups. The scan's tiles are larger: each adds the sums of all
@@ -55,7 +55,7 @@ pub const TINY: Shape = Shape {
     emit_pairs: 1,
     range_pairs: 1,
     leaf_run: 0,
-    by_component: true,
+    by_two: true,
 };
 
 /// All shapes under test.

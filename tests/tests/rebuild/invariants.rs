@@ -3,7 +3,7 @@
 use gridwalk::plan::Buffer;
 use gridwalk::{BuildOptions, Overlap, Shape};
 use gridwalk_core::dispatch::split_workgroups;
-use gridwalk_core::gather::is_dropped;
+use gridwalk_core::gather::{is_dropped, vertices_of};
 use gridwalk_core::grid::{brick_resolution, cell_id, cell_of};
 use gridwalk_core::layout::{Brick, GridHeader, TileOccupancy};
 use gridwalk_core::twin::brick_distance_x::brick_distance_x;
@@ -103,7 +103,8 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
     let found = built.triangles();
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     let mut triangles: Vec<Option<[Double; 3]>> = Vec::new();
-    for (index, found) in found.iter().enumerate() {
+    for (index, rows) in found.into_iter().enumerate() {
+        let found = vertices_of(rows);
         let expected = expected_triangle(mesh, &header, index);
         dropped += u32::from(expected.is_none());
         let v = expected.unwrap_or([[0.0; 3]; 3]);
@@ -112,13 +113,13 @@ fn check_with(gpu: &Gpu, built: &Built, mesh: &Mesh, cells: &[[u32; 2]], referen
                 (0..3).all(|i| found[i] == v[corner][i] || found[i] == 0.0 && flushed_or_same(0.0, v[corner][i] * header.inverse_scale));
             require!(same, "triangle {index} is {found:?} where {v:?} is expected");
         }
-        require!(is_dropped(found[0]) == expected.is_none(), "triangle {index}: mark of a dropped triangle");
+        require!(is_dropped(rows[0]) == expected.is_none(), "triangle {index}: mark of a dropped triangle");
         if expected.is_some() {
             let input = mesh.triangle(index);
             low = input.into_iter().fold(low, gridwalk_core::vector::min);
             high = input.into_iter().fold(high, gridwalk_core::vector::max);
         }
-        triangles.push(expected.map(|_| found.map(|v| [0, 1, 2].map(|i| f64::from(v[i])))));
+        triangles.push(expected.map(|_| found.map(|v| v.map(f64::from))));
     }
     require!(dropped == report.dropped && mesh.indices.len() as u32 == report.triangles, "the number of triangles, or of dropped ones");
     if (dropped as usize) < mesh.indices.len() {
@@ -281,8 +282,8 @@ fn exact_overlap_is_nearly_exact() {
     let boxes = gpu.build(&mesh, capacity, options(Overlap::Box));
     let header = exact.header();
     let mut met = 0;
-    for found in exact.triangles() {
-        let v = found.map(|v| [0, 1, 2].map(|i| f64::from(v[i])));
+    for rows in exact.triangles() {
+        let v = vertices_of(rows).map(|v| v.map(f64::from));
         met += (0..header.cell_count)
             .filter(|id| {
                 let (low, high) = cell_box(&header, cell_of(*id, header.resolution));

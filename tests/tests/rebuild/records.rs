@@ -210,7 +210,7 @@ fn instances_are_their_flattened_meshes() {
     let mut triangles = built.triangles().into_iter();
     for record in &scene.records {
         for number in 0..record.triangle_count {
-            let words = triangles.next().unwrap().map(|vertex| vertex[3].to_bits());
+            let words = triangles.next().unwrap().map(|row| row[3].to_bits());
             assert_eq!([words[0] & TRIANGLE_NUMBER, words[1], words[2]], [number, record.id, record.mask]);
         }
     }

@@ -1,6 +1,7 @@
 //! The second level: grids whose cells with many triangles are split, against the flat grid of the same triangles and double precision.
 
 use gridwalk::{BuildOptions, Capacity, Overlap, Report};
+use gridwalk_core::gather::vertices_of;
 use gridwalk_core::grid::{cell_id, cell_of};
 use gridwalk_core::layout::{CELL_LEVEL, CELL_SPLIT, GridHeader};
 use gridwalk_core::split::{LEAST_SPLIT, LEAST_SPLIT_OF_LONG};
@@ -42,7 +43,7 @@ fn crowded(seed: u64) -> (Mesh, BuildOptions, Capacity) {
 fn check(built: &Built, flat: &Built, exact: bool) -> Result<([u32; 6], u32), String> {
     let (header, cells, references) = (built.header(), built.cells(), built.references());
     let (flat_cells, flat_references) = (flat.cells(), flat.references());
-    let triangles: Vec<[Double; 3]> = built.triangles().iter().map(|v| v.map(|v| [0, 1, 2].map(|i| f64::from(v[i])))).collect();
+    let triangles: Vec<[Double; 3]> = built.triangles().into_iter().map(|rows| vertices_of(rows).map(|v| v.map(f64::from))).collect();
     let list = |range: [u32; 2]| references.get(range[0] as usize..range[1] as usize).ok_or_else(|| format!("a list at {range:?}"));
     let mut levels = [0; 6];
     let (mut pairs, mut measured) = (0, 0);

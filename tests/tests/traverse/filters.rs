@@ -17,7 +17,7 @@ use crate::rebuild::records::{Scene, placed};
 
 /// Whether a ray may hit a triangle, in double precision and by the words beside its vertices.
 fn admits(grid: &Grid, ray: &Ray, triangle: u32, Filter { mask, cull }: Filter) -> bool {
-    let [flags, _, of_geometry] = grid.triangles[triangle as usize].map(|vertex| vertex[3].to_bits());
+    let [flags, _, of_geometry] = grid.triangles[triangle as usize].map(|row| row[3].to_bits());
     let [a, b, c] = grid.triangle(triangle).map(|vertex| vertex.map(f64::from));
     let normal = super::compare::cross(sub(b, a), sub(c, a));
     let front = (dot(normal, ray.direction.map(f64::from)) < 0.0) != (flags >> 30 & 1 != 0);

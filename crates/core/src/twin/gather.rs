@@ -1,7 +1,7 @@
 //! Twin of kernel `gather`.
 
 use crate::dispatch::workgroups;
-use crate::gather::{TriangleWords, gather_triangle, gathered_state, tile_bounds, triangle_words};
+use crate::gather::{TriangleWords, gather_triangle, gathered_state, tile_bounds, triangle_rows};
 use crate::layout::{Bounds, BuildState};
 use crate::shape::Shape;
 
@@ -23,7 +23,7 @@ pub fn gather(
     for triangle in tiles.filter(|triangle| *triangle < triangle_count) {
         let vertices = gather_triangle(positions, indices, vertex_count, triangle);
         let words = TriangleWords { flags: triangle, id: 0, mask: u32::MAX };
-        triangles[3 * triangle as usize..][..3].copy_from_slice(&triangle_words(vertices, words));
+        triangles[3 * triangle as usize..][..3].copy_from_slice(&triangle_rows(vertices, words));
     }
     tile_bounds(shape, &triangles[..3 * triangle_count as usize], partials);
 }

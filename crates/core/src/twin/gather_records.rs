@@ -1,7 +1,7 @@
 //! Twin of kernel `gather_records`.
 
 use crate::dispatch::workgroups;
-use crate::gather::{TriangleWords, tile_bounds, triangle_words};
+use crate::gather::{TriangleWords, tile_bounds, triangle_rows};
 use crate::geometry::{AddressedMemory, FLAG_FLIP_FACING, FLAG_TWO_SIDED, GeometryRecord, position_of, vertices_of};
 use crate::layout::{Bounds, TRIANGLE_FLIPPED, TRIANGLE_TWO_SIDED};
 use crate::shape::Shape;
@@ -29,7 +29,7 @@ pub fn gather_records(
         let bit = |flag, bit| if record.flags & flag != 0 { bit } else { 0 };
         let flags = local | bit(FLAG_FLIP_FACING, TRIANGLE_FLIPPED) | bit(FLAG_TWO_SIDED, TRIANGLE_TWO_SIDED);
         let words = TriangleWords { flags, id: record.id, mask: record.mask };
-        triangles[3 * triangle as usize..][..3].copy_from_slice(&triangle_words(found, words));
+        triangles[3 * triangle as usize..][..3].copy_from_slice(&triangle_rows(found, words));
     }
     tile_bounds(shape, &triangles[..3 * triangle_count as usize], partials);
 }

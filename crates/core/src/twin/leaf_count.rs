@@ -1,11 +1,11 @@
 //! Twins of kernels `leaf_count`, `leaf_emit` and `leaf_emit_large`.
 
+use crate::gather::vertices_of;
 use crate::grid::cell_id;
 use crate::layout::{BuildState, CELL_SPLIT, GridHeader, SplitCell};
 use crate::overlap::{CellBox, SMALL_BOX, SeparatingAxes};
 use crate::shape::Shape;
 use crate::split::{leaf_box, leaf_count_of, refined};
-use crate::vector::Vec3;
 
 /// What these kernels read.
 #[derive(Clone, Copy, Debug)]
@@ -36,13 +36,10 @@ impl Leaves<'_> {
         Listed { split, place: reference - split.first_reference }
     }
 
-    /// The box of leaf cells, and those that the triangle of this first vertex overlaps.
-    fn overlapped(&self, split: &SplitCell, vertex: u32) -> Option<(CellBox, Vec<u32>)> {
+    /// The box of leaf cells, and those that the triangle of this first row overlaps.
+    fn overlapped(&self, split: &SplitCell, row: u32) -> Option<(CellBox, Vec<u32>)> {
         let fine = refined(self.grid, split.level);
-        let v: [Vec3; 3] = std::array::from_fn(|i| {
-            let [x, y, z, _] = self.triangles[vertex as usize + i];
-            [x, y, z]
-        });
+        let v = vertices_of(std::array::from_fn(|axis| self.triangles[row as usize + axis]));
         let (cells, test) = leaf_box(&fine, split, self.exact, v)?;
         let axes = SeparatingAxes::new(&fine, v, cells.low);
         let overlapped = (0..cells.count()).filter(|n| !test || axes.meets(cells.cell(*n))).collect();

@@ -1,12 +1,11 @@
 //! Twin of kernel `overlap_count`.
 
 use crate::dispatch::workgroups;
-use crate::gather::is_dropped;
+use crate::gather::{is_dropped, rows_of, vertices_of};
 use crate::grid::{BRICK_SIZE, brick_resolution, cell_id};
 use crate::layout::{BuildState, GridHeader};
 use crate::overlap::{CellBox, SMALL_BOX, SeparatingAxes, triangle_cells};
 use crate::shape::Shape;
-use crate::vector::Vec3;
 
 /// Marks the bricks of a box: a triangle may lie in them.
 pub fn mark_bricks(grid: &GridHeader, cells: &CellBox, used: &mut [u32]) {
@@ -47,12 +46,9 @@ pub fn overlap_count(
         if is_dropped(triangles[first]) {
             continue;
         }
-        let v: [Vec3; 3] = std::array::from_fn(|corner| {
-            let [x, y, z, word] = triangles[first + corner];
-            let [x, y, z] = grid.to_frame([x, y, z]);
-            triangles[first + corner] = [x, y, z, word];
-            [x, y, z]
-        });
+        let rows: [[f32; 4]; 3] = std::array::from_fn(|axis| triangles[first + axis]);
+        let v = vertices_of(rows).map(|vertex| grid.to_frame(vertex));
+        triangles[first..first + 3].copy_from_slice(&rows_of(v, rows.map(|row| row[3].to_bits())));
         let cells = triangle_cells(grid, v);
         let all = cells.count();
         boxes[triangle as usize] = [0, cell_id(cells.low, grid.resolution), cells.sizes_word()];

@@ -1,5 +1,6 @@
 //! Twins of kernels `overlap_emit` and `overlap_emit_large`.
 
+use crate::gather::vertices_of;
 use crate::grid::{BRICK_SIZE, brick_resolution, cell_id};
 use crate::layout::GridHeader;
 use crate::overlap::{CellBox, SeparatingAxes, triangle_cells};
@@ -29,10 +30,7 @@ pub struct Emission<'a> {
 
 impl Emission<'_> {
     fn cells(&self, triangle: usize) -> ([Vec3; 3], CellBox) {
-        let v: [Vec3; 3] = std::array::from_fn(|i| {
-            let [x, y, z, _] = self.triangles[3 * triangle + i];
-            [x, y, z]
-        });
+        let v = vertices_of(std::array::from_fn(|axis| self.triangles[3 * triangle + axis]));
         (v, triangle_cells(self.grid, v))
     }
 }
