@@ -60,7 +60,9 @@ void main() {
     uint begin = offsets.word[triangle];
     uint end = offsets.word[triangle + 1u];
     // At most PAIRS_EACH turns of each loop: each triangle that is passed has a pair. Those of large boxes are told by their numbers of pairs.
-    for (uint pair = first; pair < last;) {
+    // The turns are counted since lavapipe of Mesa 22.3 was seen not to end the loop by its pairs alone, though none was left, on a processor
+    // with AVX-512.
+    for (uint pair = first, turns = 0u; pair < last && turns < PAIRS_EACH; ++turns) {
         if (end - begin > SMALL_BOX) {
             vec3 v0;
             vec3 v1;
