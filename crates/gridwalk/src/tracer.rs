@@ -127,9 +127,8 @@ pub struct BuildOptions {
 }
 
 impl BuildOptions {
-    /// Density unless something else is asked for: a rebuild and two million rays together take about the least from 5 to 12, and below that a
-    /// rebuild less.
-    pub const DEFAULT_DENSITY: f32 = 6.0;
+    /// Density unless something else is asked for: a rebuild and two million rays together take about the least from 5 to 12.
+    pub const DEFAULT_DENSITY: f32 = 8.0;
 }
 
 impl Default for BuildOptions {
