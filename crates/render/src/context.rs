@@ -375,7 +375,7 @@ impl Context {
     /// The closure must record only commands whose objects outlive this call: it is what they are borrowed for.
     ///
     /// # Errors
-    /// What the closure returns; [`Error::Timeout`] after 60 s on a CPU and 10 s on a GPU; [`Error::DeviceLost`]; after both of these the
+    /// What the closure returns; [`Error::Timeout`] after 300 s on a CPU and 10 s on a GPU; [`Error::DeviceLost`]; after both of these the
     /// context is of no further use, and what it owns is given up rather than freed under a running device.
     pub fn submit<R>(&self, label: &str, record: impl FnOnce(vk::CommandBuffer) -> Result<R>) -> Result<R> {
         self.submit_after(label, None, record)
@@ -534,7 +534,7 @@ impl Shared {
 
     /// How long a submission may take.
     fn timeout(&self) -> Duration {
-        Duration::from_secs(if self.candidate.info.kind == DeviceKind::Cpu { 60 } else { 10 })
+        Duration::from_secs(if self.candidate.info.kind == DeviceKind::Cpu { 300 } else { 10 })
     }
 
     /// Keeps in mind that the device was lost.
