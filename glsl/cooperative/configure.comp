@@ -18,7 +18,6 @@ layout(constant_id = 4) const uint BOUNDS_TILE = 2048;
 
 layout(push_constant, std430) uniform Configure {
     BoundsIn partials;
-    BoundsOut scene;
     HeaderOut grid;
     StateInOut state;
     ArgumentsOut arguments;
@@ -98,7 +97,6 @@ void main() {
     if (gl_LocalInvocationID.x != 0u) {
         return;
     }
-    scene.bounds[0] = bounds;
     BuildState next = state.state;
     uint triangle_count = next.triangle_count;
     bool empty = bounds.dropped == triangle_count;

@@ -6,13 +6,9 @@
 // Scans the counts of pairs, and turns the number of all into the sizes of the steps that follow.
 
 #include "shared/offsets.glsl"
+#include "shared/sort_arguments.glsl"
 
-layout(constant_id = 2) const uint MAP_SIZE = 64;
-layout(constant_id = 3) const uint SORT_TILE = 8192;
-layout(constant_id = 4) const uint PAIRS_EACH = 16;
-layout(constant_id = 5) const uint SORT_TILES = 1; // tiles a workgroup of the sort
-layout(constant_id = 6) const uint RANGE_PAIRS = 1; // pairs an invocation of cell_ranges
-layout(constant_id = 7) const uint TABLE_ROWS = 1; // rows of the digit table a workgroup of table_scan
+layout(constant_id = 7) const uint PAIRS_EACH = 16;
 
 layout(push_constant, std430) uniform PairArgs {
     StateInOut state;
@@ -31,7 +27,6 @@ void main() {
     }
     uint count = min(total, pair_capacity);
     uint overflow = state.state.overflow | (total > pair_capacity ? OVERFLOW_PAIRS : 0u);
-    uint tiles = (count + SORT_TILE - 1u) / SORT_TILE;
     state.state.pair_total = total;
     state.state.pair_count = count;
     state.state.kept_count = count; // until the first pass counts
@@ -41,10 +36,10 @@ void main() {
 
     uvec3 runs = split_workgroups((count + PAIRS_EACH - 1u) / PAIRS_EACH, MAP_SIZE);
     arguments.arguments.emit_large = state.state.has_large != 0u ? uvec4(runs, 0u) : uvec4(0u);
-    arguments.arguments.cell_ranges = uvec4(split_workgroups((count + RANGE_PAIRS - 1u) / RANGE_PAIRS, MAP_SIZE), 0u);
+    arguments.arguments.cell_ranges = range_groups(count);
     for (uint pass = 0u; pass < pass_capacity; ++pass) {
-        bool used = pass < state.state.pass_count && count > 0u;
-        arguments.arguments.sort[pass] = used ? uvec4(split_workgroups(tiles, SORT_TILES), 0u) : uvec4(0u);
-        arguments.arguments.table_scan[pass] = used ? uvec4(split_workgroups(1u << state.state.digit_bits, TABLE_ROWS), 0u) : uvec4(0u);
+        uint sorted = pass < state.state.pass_count ? count : 0u;
+        arguments.arguments.sort[pass] = sort_groups(sorted);
+        arguments.arguments.table_scan[pass] = table_groups(sorted, state.state.digit_bits);
     }
 }

@@ -56,33 +56,12 @@ void main() {
     uint pair = first_pair + offsets.word[index];
     uint leaf_begin = split_cells.cell[owner].leaf_begin;
     if (box_word == LARGE_LEAF_BOX) {
-        SplitCell split = split_cells.cell[owner];
-        vec3 v0;
-        vec3 v1;
-        vec3 v2;
-        load_vertices(triangles, row, v0, v1, v2);
-        GridHeader fine = refined(header, split.level);
-        LeafBox box = leaf_box(fine, split, v0, v1, v2);
-        SeparatingAxes axes = separating_axes(fine, v0, v1, v2, box.cells.low);
-        uvec3 inside = uvec3((1u << split.level) - 1u);
-        uvec3 cell = box.cells.low;
-        for (uint n = 0u; n < box.count; ++n) {
-            if (!box.test || meets(axes, fine, cell - box.cells.low)) {
-                uvec3 local = cell & inside;
-                keys.word[pair] = leaf_begin + local.x + ((local.y + (local.z << split.level)) << split.level);
-                values.word[pair] = row;
-                pair += 1u;
-            }
-            cell = next_cell(box.cells, cell);
-        }
+        emit_large(header, triangles, split_cells.cell[owner], row, pair, keys, values, true);
         return;
     }
-    uint along = 1u << (box_word >> 25u);
-    uvec2 size = (uvec2(box_word >> 15u, box_word >> 20u) & 31u) + uvec2(1u);
-    uint key = leaf_begin + (box_word & 0x7FFFu);
-    vec2 inverse = vec2(1.0) / vec2(size);
+    SmallLeafBox box = small_leaf_box(box_word);
     for (; mask != 0u; mask &= mask - 1u) {
-        keys.word[pair] = key + id_within(uint(findLSB(mask)), inverse, along - size.x, along * (along - size.y));
+        keys.word[pair] = leaf_begin + box.low + id_within(uint(findLSB(mask)), box.inverse, box.to_row, box.to_slice);
         values.word[pair] = row;
         pair += 1u;
     }

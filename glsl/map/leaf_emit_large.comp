@@ -29,21 +29,5 @@ void main() {
     uint pair = first_pair + offsets.word[index];
     SplitCell split = split_cells.cell[split_cell_of(split_cells, owners, state, index)];
     uint row = references.row[split.list_begin + index - split.first_reference];
-    vec3 v0;
-    vec3 v1;
-    vec3 v2;
-    load_vertices(triangles, row, v0, v1, v2);
-    GridHeader fine = refined(header, split.level);
-    LeafBox box = leaf_box(fine, split, v0, v1, v2);
-    SeparatingAxes axes = separating_axes(fine, v0, v1, v2, box.cells.low);
-    uvec3 inside = uvec3((1u << split.level) - 1u);
-    uvec3 cell = box.cells.low;
-    for (uint n = 0u; n < box.count; ++n) {
-        if (!box.test || meets(axes, fine, cell - box.cells.low)) {
-            uvec3 local = cell & inside;
-            keys.word[pair] = split.leaf_begin + local.x + ((local.y + (local.z << split.level)) << split.level);
-            pair += 1u;
-        }
-        cell = next_cell(box.cells, cell);
-    }
+    emit_large(header, triangles, split, row, pair, keys, keys, false);
 }

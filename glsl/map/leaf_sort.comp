@@ -29,7 +29,10 @@ layout(push_constant, std430) uniform LeafSort {
     uint pass_capacity;
 };
 
-// Turns of an invocation's loops, at most: a run has LEAF_RUN before its last split cell, and that the rest.
+// Turns of an invocation's loops, at most: a run has LEAF_RUN before its last split cell, and that the rest. lavapipe ends loops after 65,535 turns
+// of a subgroup, whose lanes wait in each loop for the one that takes most: one lane's references and pairs and another's leaf cells may come
+// together. Leaf cells are at most two thirds of a lane's work, where lists of 1,024 triangles have 32^3; so these are 32,000 + 21,333, and some
+// 800 of the searches and of the records.
 const uint MOST_WORK = 32000u;
 
 // The turns that split cells take: references are passed by twice, two pairs of one in a turn, and eight leaf cells in a turn once.
@@ -81,10 +84,7 @@ void pass_by(uint record, uint reference, uint end, uint first_cell, uint first_
     uint mask = 0u;
     uint large_count = 0u;
     uint large_pair = 0u;
-    uint low = 0u;
-    vec2 inverse = vec2(0.0);
-    uint to_row = 0u;
-    uint to_slice = 0u;
+    SmallLeafBox box = small_leaf_box(0u);
     while (reference < end || (mask | large_count) != 0u) {
         if ((mask | large_count) == 0u) {
             if (reference == cell_end) {
@@ -103,19 +103,15 @@ void pass_by(uint record, uint reference, uint end, uint first_cell, uint first_
             if (emits) {
                 row = references.row[to_list + reference];
             }
-            uint along = 1u << (box_word >> 25u);
-            uvec2 size = (uvec2(box_word >> 15u, box_word >> 20u) & 31u) + uvec2(1u);
-            low = leaf_begin + (box_word & 0x7FFFu);
-            inverse = vec2(1.0) / vec2(size);
-            to_row = along - size.x;
-            to_slice = along * (along - size.y);
+            box = small_leaf_box(box_word);
+            box.low += leaf_begin;
             reference += 1u;
         }
         if ((mask | large_count) != 0u) {
             uint rest = mask & (mask - 1u);
             bool two = rest != 0u || large_count > 1u;
-            uint a = low + id_within(uint(findLSB(mask)), inverse, to_row, to_slice);
-            uint b = low + id_within(uint(findLSB(rest)), inverse, to_row, to_slice);
+            uint a = box.low + id_within(uint(findLSB(mask)), box.inverse, box.to_row, box.to_slice);
+            uint b = box.low + id_within(uint(findLSB(rest)), box.inverse, box.to_row, box.to_slice);
             mask = rest & (rest - 1u);
             if (large_count != 0u) {
                 a = first_cell + masks.word[large_pair];

@@ -17,7 +17,6 @@ layout(push_constant, std430) uniform OverlapEmit {
     StateIn state;
     UintsIn offsets;
     UintsIn boxes; // of overlap_count
-    Triangles triangles; // read for large boxes alone
     UintsOut keys_a;
     UintsOut keys_b;
     UintsOut values_a;

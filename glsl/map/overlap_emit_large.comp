@@ -59,7 +59,8 @@ void main() {
     uint triangle = owner(first, triangle_count);
     uint begin = offsets.word[triangle];
     uint end = offsets.word[triangle + 1u];
-    // At most PAIRS_EACH turns of each loop: each triangle that is passed has a pair. Those of large boxes are told by their numbers of pairs.
+    // At most PAIRS_EACH turns: each triangle that is passed has a pair, and may cost a search. The inner loop takes as many in all, but lanes that
+    // are in different turns of this one go through it one after another. Those of large boxes are told by their numbers of pairs.
     // The turns are counted since lavapipe of Mesa 22.3 was seen not to end the loop by its pairs alone, though none was left, on a processor
     // with AVX-512.
     for (uint pair = first, turns = 0u; pair < last && turns < PAIRS_EACH; ++turns) {

@@ -42,7 +42,7 @@ struct DispatchArguments {
     uvec4 table_scan[MAX_PASSES];
     uvec4 cell_ranges;
     uvec4 brick_reduce;
-    uvec4 bricks; // one invocation each
+    uvec4 bricks; // one invocation each; brick_distance_x uses the first of them
     uvec4 clear_cells;
     // Written only where geometries are counted on the device.
     uvec4 gather;

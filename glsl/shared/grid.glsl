@@ -22,16 +22,6 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Tr
 // The triangle of a first row: a third of it, by the inverse of 3 modulo 2^32, since 3 divides it.
 uint triangle_of(uint row) { return row * 0xAAAAAAABu; }
 
-// Vertices of the triangle whose first row it is.
-void load_vertices(Triangles triangles, uint row, out vec3 v0, out vec3 v1, out vec3 v2) {
-    vec3 x = triangles.row[row].xyz;
-    vec3 y = triangles.row[row + 1u].xyz;
-    vec3 z = triangles.row[row + 2u].xyz;
-    v0 = vec3(x.x, y.x, z.x);
-    v1 = vec3(x.y, y.y, z.y);
-    v2 = vec3(x.z, y.z, z.z);
-}
-
 const uint CELL_SPLIT = 1u << 31;
 const uint CELL_LEVEL = 7u;
 

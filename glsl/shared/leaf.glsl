@@ -53,13 +53,36 @@ LeafBox leaf_box(GridHeader fine, SplitCell split, vec3 v0, vec3 v1, vec3 v2) {
     return box;
 }
 
-// What the count keeps of a box for the emission: nothing of a large one but that it is one; else its first leaf cell, its sizes less one
-// along x and y, and the level.
+// What the count keeps of a box for the emission.
 uint leaf_box_word(LeafBox box, uint level) {
     uvec3 low = box.cells.low & ((1u << level) - 1u);
     uvec3 more = box.cells.high - box.cells.low;
-    uint word = (low.x + ((low.y + (low.z << level)) << level)) | more.x << 15u | more.y << 20u | level << 25u;
-    return box.count > SMALL_BOX ? LARGE_LEAF_BOX : (box.count == 0u ? 0u : word);
+    return box.count > SMALL_BOX ? LARGE_LEAF_BOX : (box.count == 0u ? 0u : small_leaf_box_word(low, more, level));
+}
+
+// Writes the leaf cells that the triangle of a large box overlaps from `pair` on: `with_values` its row beside each, in the same turn, of which
+// there are no more to spare.
+void emit_large(GridHeader header, Triangles triangles, SplitCell split, uint row, uint pair, UintsOut keys, UintsOut values, bool with_values) {
+    vec3 v0;
+    vec3 v1;
+    vec3 v2;
+    load_vertices(triangles, row, v0, v1, v2);
+    GridHeader fine = refined(header, split.level);
+    LeafBox box = leaf_box(fine, split, v0, v1, v2);
+    SeparatingAxes axes = separating_axes(fine, v0, v1, v2, box.cells.low);
+    uvec3 inside = uvec3((1u << split.level) - 1u);
+    uvec3 cell = box.cells.low;
+    for (uint n = 0u; n < box.count; ++n) {
+        if (!box.test || meets(axes, fine, cell - box.cells.low)) {
+            uvec3 local = cell & inside;
+            keys.word[pair] = split.leaf_begin + local.x + ((local.y + (local.z << split.level)) << split.level);
+            if (with_values) {
+                values.word[pair] = row;
+            }
+            pair += 1u;
+        }
+        cell = next_cell(box.cells, cell);
+    }
 }
 
 #endif

@@ -5,6 +5,16 @@
 
 #include "shared/grid.glsl"
 
+// Vertices of the triangle whose first row it is.
+void load_vertices(Triangles triangles, uint row, out vec3 v0, out vec3 v1, out vec3 v2) {
+    vec3 x = triangles.row[row].xyz;
+    vec3 y = triangles.row[row + 1u].xyz;
+    vec3 z = triangles.row[row + 2u].xyz;
+    v0 = vec3(x.x, y.x, z.x);
+    v1 = vec3(x.y, y.y, z.y);
+    v2 = vec3(x.z, y.z, z.z);
+}
+
 struct CellBox {
     uvec3 low;
     uvec3 high; // inclusive

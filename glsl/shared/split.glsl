@@ -44,6 +44,26 @@ struct SplitCell {
 // What the count of the second level keeps of a triangle's box of leaf cells where that is a large one.
 const uint LARGE_LEAF_BOX = 1u << 31;
 
+// And where it is a small one: its first leaf cell within the split cell, its sizes less one along x and y, and the level.
+uint small_leaf_box_word(uvec3 low, uvec3 more, uint level) {
+    return (low.x + ((low.y + (low.z << level)) << level)) | more.x << 15u | more.y << 20u | level << 25u;
+}
+
+// A small box, as overlap.glsl's id_within takes it.
+struct SmallLeafBox {
+    uint low;
+    vec2 inverse;
+    uint to_row;
+    uint to_slice;
+};
+
+// Of the word of a large box nothing that counts: its level is masked, since more bits than a word has are no shift.
+SmallLeafBox small_leaf_box(uint word) {
+    uint along = 1u << ((word >> 25u) & 7u);
+    uvec2 size = (uvec2(word >> 15u, word >> 20u) & 31u) + uvec2(1u);
+    return SmallLeafBox(word & 0x7FFFu, vec2(1.0) / vec2(size), along - size.x, along * (along - size.y));
+}
+
 // The split cell that lists the first reference of each block of 2^shift is kept, so that the one of any reference is found among few. There
 // are at most 2^14 blocks, of at least 2^least references.
 uint owner_shift(uint least, uint reference_count) { return max(least, uint(max(findMSB(reference_count), 13) - 13)); }

@@ -47,7 +47,7 @@ pub struct GridCopy {
     pub header: GridHeader,
     pub bricks: Vec<Brick>,
     pub cells: Vec<[u32; 2]>,
-    /// By first vertices, as the grid has them.
+    /// By first rows, as the grid has them.
     pub references: Vec<u32>,
     pub triangles: Vec<[[f32; 4]; 3]>,
 }
@@ -156,7 +156,7 @@ impl Built {
 
     /// The triangles in the lists of all cells, one after another; then in those of all leaf cells.
     pub fn references(&self) -> Vec<u32> {
-        self.first_rows().into_iter().map(|vertex| vertex / 3).collect()
+        self.first_rows().into_iter().map(|row| row / 3).collect()
     }
 
     /// Likewise, as the grid has them.
@@ -197,7 +197,7 @@ impl Built {
     /// Lists another triangle wherever this one is listed: a grid that is wrong, for negative controls.
     pub fn forget_triangle(&self, victim: u32, instead: u32) {
         let mut references = self.first_rows();
-        references.iter_mut().filter(|vertex| **vertex == 3 * victim).for_each(|vertex| *vertex = 3 * instead);
+        references.iter_mut().filter(|row| **row == 3 * victim).for_each(|row| *row = 3 * instead);
         self.grid.write(self.offset(self.header().references), &references);
     }
 

@@ -771,7 +771,8 @@ typedef struct GridwalkReport {
      */
     uint32_t pairs;
     /**
-     * Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
+     * Cells of all triangles, with exact overlap those that each meets, of a box of more than 32 cells all; or pairs of both levels if those are
+     * more and did not fit: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
      */
     uint32_t pair_total;
     /**

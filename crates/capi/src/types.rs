@@ -399,7 +399,8 @@ pub struct GridwalkReport {
     pub longest_list: u32,
     /// Pairs (cell, triangle) that the grid lists.
     pub pairs: u32,
-    /// Cells in all triangles' boxes: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
+    /// Cells of all triangles, with exact overlap those that each meets, of a box of more than 32 cells all; or pairs of both levels if those are
+    /// more and did not fit: the capacity of pairs that the build needed. 0xFFFFFFFF: that many or more, lower the density.
     pub pair_total: u32,
     /// 0, or bits `GRIDWALK_OVERFLOW_PAIRS`, `GRIDWALK_OVERFLOW_CELLS`, `GRIDWALK_OVERFLOW_TRIANGLES` and `GRIDWALK_OVERFLOW_LEAVES`.
     pub overflow: u32,

@@ -194,7 +194,8 @@ pub struct DispatchArguments {
     pub cell_ranges: [u32; 4],
     /// Of `brick_reduce`.
     pub brick_reduce: [u32; 4],
-    /// Of `clear_bricks`, `brick_distance_x`, `_y` and `_z`: an invocation a brick.
+    /// Of `clear_bricks`, `brick_distance_y` and `_z`: an invocation a brick. Of `brick_distance_x` too, whose invocations take a run of bricks:
+    /// most have none.
     pub bricks: [u32; 4],
     /// Of `clear_cells`: an invocation a slice of a brick.
     pub clear_cells: [u32; 4],

@@ -18,14 +18,15 @@ pub struct Shape {
     pub reduce_bricks: u32,
     /// Most bits a digit of the sort, at least 4; 2^`sort_bits` <= 8 * [`Shape::sort_tile`].
     pub sort_bits: u32,
-    /// Invocations a workgroup of the sort; 2^`sort_bits` * `sort_size` <= 8,192 unless `sort_alone`.
+    /// Invocations a workgroup of the sort and of `leaf_sort`; 2^`sort_bits` * `sort_size` <= 8,192 unless `sort_alone`.
     pub sort_size: u32,
     /// Keys an invocation of the sort.
     pub sort_keys: u32,
     /// Whether an invocation's keys are a tile of the sort, counted in a private array; otherwise those of a workgroup are, in shared
     /// memory. 2^`sort_bits` + `sort_keys` <= 16,384 then, and no more than 32,768 * `sort_keys` pairs or rays are sorted.
     pub sort_alone: bool,
-    /// Pairs an invocation of the emission.
+    /// Pairs an invocation of the emission of large boxes, at most 700: each takes 44 turns at most, one, 27 of a search and those of 16 lanes
+    /// one after another, and 32,768 of them keep to the budget of its loops.
     pub emit_pairs: u32,
     /// Pairs an invocation of `cell_ranges`.
     pub range_pairs: u32,
@@ -74,10 +75,11 @@ impl Shape {
     /// Whether the fields keep to what is said of them: kernels cut otherwise would not fit into shared memory, or give wrong results.
     pub fn is_valid(&self) -> bool {
         let sizes = [self.map_size, self.scan_size, self.sort_size];
-        let items = [self.scan_items, self.reduce_items, self.reduce_bricks, self.sort_keys, self.emit_pairs, self.range_pairs];
+        let items = [self.scan_items, self.reduce_items, self.reduce_bricks, self.sort_keys, self.range_pairs];
         let digits = |bits: u32| 1_u32 << bits;
         sizes.iter().all(|size| (1..=256).contains(size))
             && items.iter().all(|items| (1..=32_767).contains(items))
+            && (1..=700).contains(&self.emit_pairs)
             && self.leaf_run <= 16_000
             && self.scan_size.is_power_of_two()
             // Fewer bits need more passes than a plan records.
@@ -216,12 +218,14 @@ mod tests {
         let (cpu, gpu) = (Shape::CPU, Shape::GPU);
         assert!(cpu.is_valid() && gpu.is_valid());
         assert!(Shape { sort_size: 4, sort_keys: 1, ..gpu }.is_valid());
+        assert!(Shape { emit_pairs: 700, ..gpu }.is_valid());
         let wrong = [
             Shape { map_size: 0, ..cpu },
             Shape { map_size: 257, ..cpu },
             Shape { scan_size: 24, ..cpu },
             Shape { scan_items: 0, ..cpu },
-            Shape { emit_pairs: 32_768, ..gpu },
+            Shape { emit_pairs: 701, ..gpu },
+            Shape { emit_pairs: 0, ..cpu },
             Shape { range_pairs: 32_768, ..cpu },
             Shape { range_pairs: 0, ..gpu },
             Shape { leaf_run: 16_001, ..cpu },

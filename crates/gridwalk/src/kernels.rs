@@ -187,10 +187,9 @@ pub static CONFIGURE: Kernel = Kernel {
     spirv: spirv!("../spirv/configure.spv"),
     local_size: [256, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 112,
+    push_constant_size: 104,
     accesses: &[
         ("partials", Access::Read),
-        ("scene", Access::Write),
         ("grid", Access::Write),
         ("state", Access::ReadWrite),
         ("arguments", Access::Write),
@@ -458,13 +457,12 @@ pub static OVERLAP_EMIT: Kernel = Kernel {
     spirv: spirv!("../spirv/overlap_emit.spv"),
     local_size: [64, 1, 1],
     local_size_ids: [Some(0), None, None],
-    push_constant_size: 72,
+    push_constant_size: 64,
     accesses: &[
         ("grid", Access::Read),
         ("state", Access::Read),
         ("offsets", Access::Read),
         ("boxes", Access::Read),
-        ("triangles", Access::Read),
         ("keys_a", Access::Write),
         ("keys_b", Access::Write),
         ("values_a", Access::Write),
@@ -514,10 +512,10 @@ pub static PAIR_ARGS: Kernel = Kernel {
         (1, "ITEMS_EACH", 16),
         (2, "MAP_SIZE", 64),
         (3, "SORT_TILE", 8192),
-        (4, "PAIRS_EACH", 16),
-        (5, "SORT_TILES", 1),
-        (6, "RANGE_PAIRS", 1),
-        (7, "TABLE_ROWS", 1),
+        (4, "SORT_TILES", 1),
+        (5, "RANGE_PAIRS", 1),
+        (6, "TABLE_ROWS", 1),
+        (7, "PAIRS_EACH", 16),
     ],
 };
 
@@ -939,39 +937,37 @@ const _: () = {
     use crate::push::Configure as Host;
     assert!(core::mem::offset_of!(Host, partials) == 0);
     assert!(size(|host: &Host| &host.partials) == 8);
-    assert!(core::mem::offset_of!(Host, scene) == 8);
-    assert!(size(|host: &Host| &host.scene) == 8);
-    assert!(core::mem::offset_of!(Host, grid) == 16);
+    assert!(core::mem::offset_of!(Host, grid) == 8);
     assert!(size(|host: &Host| &host.grid) == 8);
-    assert!(core::mem::offset_of!(Host, state) == 24);
+    assert!(core::mem::offset_of!(Host, state) == 16);
     assert!(size(|host: &Host| &host.state) == 8);
-    assert!(core::mem::offset_of!(Host, arguments) == 32);
+    assert!(core::mem::offset_of!(Host, arguments) == 24);
     assert!(size(|host: &Host| &host.arguments) == 8);
-    assert!(core::mem::offset_of!(Host, report) == 40);
+    assert!(core::mem::offset_of!(Host, report) == 32);
     assert!(size(|host: &Host| &host.report) == 8);
-    assert!(core::mem::offset_of!(Host, cells) == 48);
+    assert!(core::mem::offset_of!(Host, cells) == 40);
     assert!(size(|host: &Host| &host.cells) == 8);
-    assert!(core::mem::offset_of!(Host, references) == 56);
+    assert!(core::mem::offset_of!(Host, references) == 48);
     assert!(size(|host: &Host| &host.references) == 8);
-    assert!(core::mem::offset_of!(Host, triangles) == 64);
+    assert!(core::mem::offset_of!(Host, triangles) == 56);
     assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, bricks) == 72);
+    assert!(core::mem::offset_of!(Host, bricks) == 64);
     assert!(size(|host: &Host| &host.bricks) == 8);
-    assert!(core::mem::offset_of!(Host, cell_capacity) == 80);
+    assert!(core::mem::offset_of!(Host, cell_capacity) == 72);
     assert!(size(|host: &Host| &host.cell_capacity) == 4);
-    assert!(core::mem::offset_of!(Host, density) == 84);
+    assert!(core::mem::offset_of!(Host, density) == 76);
     assert!(size(|host: &Host| &host.density) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_x) == 88);
+    assert!(core::mem::offset_of!(Host, fixed_x) == 80);
     assert!(size(|host: &Host| &host.fixed_x) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_y) == 92);
+    assert!(core::mem::offset_of!(Host, fixed_y) == 84);
     assert!(size(|host: &Host| &host.fixed_y) == 4);
-    assert!(core::mem::offset_of!(Host, fixed_z) == 96);
+    assert!(core::mem::offset_of!(Host, fixed_z) == 88);
     assert!(size(|host: &Host| &host.fixed_z) == 4);
-    assert!(core::mem::offset_of!(Host, levels) == 100);
+    assert!(core::mem::offset_of!(Host, levels) == 92);
     assert!(size(|host: &Host| &host.levels) == 4);
-    assert!(core::mem::offset_of!(Host, exact) == 104);
+    assert!(core::mem::offset_of!(Host, exact) == 96);
     assert!(size(|host: &Host| &host.exact) == 4);
-    assert!(size_of::<Host>() == 112);
+    assert!(size_of::<Host>() == 104);
 };
 const _: () = {
     use crate::push::CountHits as Host;
@@ -1178,6 +1174,31 @@ const _: () = {
     assert!(size_of::<Host>() == 48);
 };
 const _: () = {
+    use gridwalk_core::layout::LeafArguments as Host;
+    assert!(core::mem::offset_of!(Host, split_cells) == 0);
+    assert!(size(|host: &Host| &host.split_cells) == 16);
+    assert!(core::mem::offset_of!(Host, count) == 16);
+    assert!(size(|host: &Host| &host.count) == 16);
+    assert!(core::mem::offset_of!(Host, offsets_scan) == 32);
+    assert!(size(|host: &Host| &host.offsets_scan) == 16);
+    assert!(core::mem::offset_of!(Host, args) == 48);
+    assert!(size(|host: &Host| &host.args) == 16);
+    assert!(core::mem::offset_of!(Host, emit_large) == 64);
+    assert!(size(|host: &Host| &host.emit_large) == 16);
+    assert!(core::mem::offset_of!(Host, leaf_sort) == 80);
+    assert!(size(|host: &Host| &host.leaf_sort) == 16);
+    assert!(core::mem::offset_of!(Host, emit) == 96);
+    assert!(size(|host: &Host| &host.emit) == 16);
+    assert!(core::mem::offset_of!(Host, sort) == 112);
+    assert!(size(|host: &Host| &host.sort) == 128);
+    assert!(core::mem::offset_of!(Host, table_scan) == 240);
+    assert!(size(|host: &Host| &host.table_scan) == 128);
+    assert!(core::mem::offset_of!(Host, cell_ranges) == 368);
+    assert!(size(|host: &Host| &host.cell_ranges) == 16);
+    assert!(core::mem::offset_of!(Host, distance) == 384);
+    assert!(size(|host: &Host| &host.distance) == 16);
+};
+const _: () = {
     use crate::push::LeafCount as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);
@@ -1341,17 +1362,15 @@ const _: () = {
     assert!(size(|host: &Host| &host.offsets) == 8);
     assert!(core::mem::offset_of!(Host, boxes) == 24);
     assert!(size(|host: &Host| &host.boxes) == 8);
-    assert!(core::mem::offset_of!(Host, triangles) == 32);
-    assert!(size(|host: &Host| &host.triangles) == 8);
-    assert!(core::mem::offset_of!(Host, keys_a) == 40);
+    assert!(core::mem::offset_of!(Host, keys_a) == 32);
     assert!(size(|host: &Host| &host.keys_a) == 8);
-    assert!(core::mem::offset_of!(Host, keys_b) == 48);
+    assert!(core::mem::offset_of!(Host, keys_b) == 40);
     assert!(size(|host: &Host| &host.keys_b) == 8);
-    assert!(core::mem::offset_of!(Host, values_a) == 56);
+    assert!(core::mem::offset_of!(Host, values_a) == 48);
     assert!(size(|host: &Host| &host.values_a) == 8);
-    assert!(core::mem::offset_of!(Host, values_b) == 64);
+    assert!(core::mem::offset_of!(Host, values_b) == 56);
     assert!(size(|host: &Host| &host.values_b) == 8);
-    assert!(size_of::<Host>() == 72);
+    assert!(size_of::<Host>() == 64);
 };
 const _: () = {
     use crate::push::OverlapEmitLarge as Host;
@@ -1537,6 +1556,26 @@ const _: () = {
     assert!(size_of::<Host>() == 72);
 };
 const _: () = {
+    use gridwalk_core::layout::SplitCell as Host;
+    assert!(core::mem::offset_of!(Host, first_reference) == 0);
+    assert!(size(|host: &Host| &host.first_reference) == 4);
+    assert!(core::mem::offset_of!(Host, list_begin) == 4);
+    assert!(size(|host: &Host| &host.list_begin) == 4);
+    assert!(core::mem::offset_of!(Host, list_length) == 8);
+    assert!(size(|host: &Host| &host.list_length) == 4);
+    assert!(core::mem::offset_of!(Host, leaf_begin) == 12);
+    assert!(size(|host: &Host| &host.leaf_begin) == 4);
+    assert!(core::mem::offset_of!(Host, cell) == 16);
+    assert!(size(|host: &Host| &host.cell) == 4);
+    assert!(core::mem::offset_of!(Host, level) == 20);
+    assert!(size(|host: &Host| &host.level) == 4);
+    assert!(core::mem::offset_of!(Host, xy) == 24);
+    assert!(size(|host: &Host| &host.xy) == 4);
+    assert!(core::mem::offset_of!(Host, z) == 28);
+    assert!(size(|host: &Host| &host.z) == 4);
+    assert!(size_of::<Host>() == 32);
+};
+const _: () = {
     use crate::push::SplitCells as Host;
     assert!(core::mem::offset_of!(Host, grid) == 0);
     assert!(size(|host: &Host| &host.grid) == 8);
@@ -1567,6 +1606,28 @@ const _: () = {
     assert!(core::mem::offset_of!(Host, pass) == 24);
     assert!(size(|host: &Host| &host.pass) == 4);
     assert!(size_of::<Host>() == 32);
+};
+const _: () = {
+    use gridwalk_core::layout::TileOccupancy as Host;
+    assert!(core::mem::offset_of!(Host, cells_in_use) == 0);
+    assert!(size(|host: &Host| &host.cells_in_use) == 4);
+    assert!(core::mem::offset_of!(Host, longest_list) == 4);
+    assert!(size(|host: &Host| &host.longest_list) == 4);
+    assert!(core::mem::offset_of!(Host, split_cells) == 8);
+    assert!(size(|host: &Host| &host.split_cells) == 8);
+    assert!(core::mem::offset_of!(Host, split_references) == 16);
+    assert!(size(|host: &Host| &host.split_references) == 8);
+    assert!(core::mem::offset_of!(Host, leaf_cells) == 24);
+    assert!(size(|host: &Host| &host.leaf_cells) == 8);
+    assert!(core::mem::offset_of!(Host, cells_before) == 32);
+    assert!(size(|host: &Host| &host.cells_before) == 4);
+    assert!(core::mem::offset_of!(Host, references_before) == 36);
+    assert!(size(|host: &Host| &host.references_before) == 4);
+    assert!(core::mem::offset_of!(Host, leaves_before) == 40);
+    assert!(size(|host: &Host| &host.leaves_before) == 4);
+    assert!(core::mem::offset_of!(Host, reserved) == 44);
+    assert!(size(|host: &Host| &host.reserved) == 4);
+    assert!(size_of::<Host>() == 48);
 };
 const _: () = {
     use crate::push::TraceArgs as Host;

@@ -28,7 +28,6 @@ pub enum Buffer {
     Report,
     State,
     Arguments,
-    SceneBounds,
     BoundsPartials,
     Offsets,
     CellBoxes,
@@ -56,7 +55,7 @@ pub enum Buffer {
 
 impl Buffer {
     /// All of them, in order of their tokens.
-    pub const ALL: [Buffer; 35] = [
+    pub const ALL: [Buffer; 34] = [
         Buffer::Positions,
         Buffer::Indices,
         Buffer::Records,
@@ -68,7 +67,6 @@ impl Buffer {
         Buffer::Report,
         Buffer::State,
         Buffer::Arguments,
-        Buffer::SceneBounds,
         Buffer::BoundsPartials,
         Buffer::Offsets,
         Buffer::CellBoxes,
@@ -262,7 +260,7 @@ pub struct BuildInputs {
     pub second_level: bool,
 }
 
-/// Bit of [`Step::variant`] of `overlap_count`, `overlap_emit_large`, `leaf_count` and `leaf_emit`.
+/// Bit of [`Step::variant`] of `overlap_count`, `overlap_emit_large`, `leaf_count`, `leaf_emit` and `leaf_emit_large`.
 pub(crate) const EXACT: u32 = 1;
 
 fn argument(offset: usize) -> Dispatch {
@@ -357,7 +355,6 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
         Dispatch::Direct([1, 1, 1]),
         push::Configure {
             partials: BoundsPartials.token(),
-            scene: SceneBounds.token(),
             grid,
             state: State.token(),
             arguments: Arguments.token(),
@@ -406,7 +403,7 @@ pub fn build_plan(capacity: &Capacity, inputs: &BuildInputs, shape: &Shape) -> P
     ));
     plan.barrier(Barrier::ShaderAndIndirect);
     let (keys_a, keys_b, values_a, values_b) = (KeysA.token(), KeysB.token(), ValuesA.token(), References.token());
-    let emission = push::OverlapEmit { grid, state, offsets, boxes, triangles, keys_a, keys_b, values_a, values_b };
+    let emission = push::OverlapEmit { grid, state, offsets, boxes, keys_a, keys_b, values_a, values_b };
     plan.step(Step::new(&OVERLAP_EMIT, groups.overlap_count, emission));
     // The two write different words, but of the same arrays, and hazards are told by arrays.
     plan.barrier(Barrier::Shader);

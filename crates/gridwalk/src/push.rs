@@ -183,7 +183,6 @@ pub(crate) struct ClosestHit {
 #[repr(C)]
 pub(crate) struct Configure {
     pub(crate) partials: u64,
-    pub(crate) scene: u64,
     pub(crate) grid: u64,
     pub(crate) state: u64,
     pub(crate) arguments: u64,
@@ -222,7 +221,6 @@ pub(crate) struct OverlapEmit {
     pub(crate) state: u64,
     pub(crate) offsets: u64,
     pub(crate) boxes: u64,
-    pub(crate) triangles: u64,
     pub(crate) keys_a: u64,
     pub(crate) keys_b: u64,
     pub(crate) values_a: u64,

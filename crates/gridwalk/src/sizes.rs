@@ -123,7 +123,6 @@ impl GridLayout {
 pub(crate) struct ScratchLayout {
     pub(crate) state: Part,
     pub(crate) arguments: Part,
-    pub(crate) scene_bounds: Part,
     pub(crate) bounds_partials: Part,
     pub(crate) offsets: Part,
     pub(crate) cell_boxes: Part,
@@ -152,7 +151,6 @@ impl ScratchLayout {
         ScratchLayout {
             state: packer.part(size_of::<BuildState>() as u64),
             arguments: packer.part(size_of::<DispatchArguments>() as u64),
-            scene_bounds: packer.part(size_of::<Bounds>() as u64),
             bounds_partials: packer.part(u64::from(shape.bounds_tiles(capacity.triangles)) * size_of::<Bounds>() as u64),
             offsets: packer.part(offsets * 4),
             cell_boxes: packer.part(u64::from(capacity.triangles.max(1)) * 12),
@@ -174,7 +172,7 @@ impl ScratchLayout {
 }
 
 /// Name and bytes of every part of the grid and the scratch region, in this order.
-pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64); 22] {
+pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64); 21] {
     let grid = GridLayout::new(capacity);
     let scratch = ScratchLayout::new(capacity, shape);
     [
@@ -185,7 +183,6 @@ pub(crate) fn parts(capacity: &Capacity, shape: &Shape) -> [(&'static str, u64);
         ("bricks", grid.bricks),
         ("build state", scratch.state),
         ("dispatch arguments", scratch.arguments),
-        ("scene bounds", scratch.scene_bounds),
         ("bounds partials", scratch.bounds_partials),
         ("offsets", scratch.offsets),
         ("cell boxes", scratch.cell_boxes),

@@ -559,7 +559,6 @@ impl Tracer {
             Buffer::Bricks => in_grid(grid.bricks),
             Buffer::State => in_scratch(scratch.state),
             Buffer::Arguments => in_scratch(scratch.arguments),
-            Buffer::SceneBounds => in_scratch(scratch.scene_bounds),
             Buffer::BoundsPartials => in_scratch(scratch.bounds_partials),
             Buffer::Offsets => in_scratch(scratch.offsets),
             Buffer::CellBoxes => in_scratch(scratch.cell_boxes),

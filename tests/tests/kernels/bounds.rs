@@ -24,8 +24,7 @@ fn check(gpu: &Gpu, mesh: &Mesh, what: &str) {
     let mut expected = vec![Bounds::zeroed(); tiles as usize];
     tile_bounds(&shape, &gathered(mesh), &mut expected);
     assert_same(&format!("{what}: partials"), &partials.read::<Bounds>(0, tiles as usize), &expected);
-    let mut whole = Bounds::EMPTY;
-    unite_bounds(&expected, &mut whole, tiles);
+    let whole = unite_bounds(&expected, tiles);
     assert_same(&format!("{what}: scene"), &[united(gpu, &state, &partials)], &[whole]);
 }
 

@@ -47,8 +47,7 @@ fn the_largest_scene_box() {
         let boxes: Vec<Bounds> = (0..count).map(|i| Bounds { low: corner(), dropped: i % 3, high: corner(), reserved: 0 }).collect();
         let partials = gpu.upload("partials", &boxes);
         let state = gpu.upload("state", &[gathered_state(MAX_TRIANGLES, MAX_TRIANGLES)]);
-        let mut expected = Bounds::EMPTY;
-        unite_bounds(&boxes, &mut expected, count);
+        let expected = unite_bounds(&boxes, count);
         assert_same(&format!("{count} tiles, {shape:?}"), &[united(gpu, &state, &partials)], &[expected]);
     }
 }

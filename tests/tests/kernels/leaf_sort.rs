@@ -132,7 +132,7 @@ fn lists_of_leaf_cells() {
 #[test]
 fn lists_that_are_long_for_an_invocation() {
     for gpu in devices().into_iter().filter(|gpu| gpu.tracer.shape().leaf_run > 0) {
-        let mut random = Random::new(2);
+        let (shape, mut random) = (gpu.tracer.shape(), Random::new(2));
         let filled = |random: &mut Random, most: u32| {
             let mut split = Split::default();
             (0..30).for_each(|_| split.push(1, 30, 0, random));
@@ -156,7 +156,7 @@ fn lists_that_are_long_for_an_invocation() {
             (0..30).for_each(|_| split.push(2, 50, 0, random));
             split
         };
-        let longest = filled(&mut random, 25_000);
+        let longest = filled(&mut random, 31_400 - shape.leaf_run);
         assert!(!check(gpu, &longest, "long"));
         let longer = filled(&mut random, 32_100);
         assert!(check(gpu, &longer, "too long"));

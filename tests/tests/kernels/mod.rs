@@ -104,14 +104,15 @@ pub fn gathered(mesh: &Mesh) -> Vec<[f32; 4]> {
     triangles
 }
 
-/// The scene box that `configure` makes of tiles' boxes.
+/// The scene box that `configure` makes of tiles' boxes and reports; of no triangle it reports none.
 pub fn united(gpu: &Gpu, state: &Guarded, partials: &Guarded) -> Bounds {
-    let memory = [32, size_of::<GridHeader>(), size_of::<DispatchArguments>(), size_of::<Report>(), 16, 16, 16, 16];
+    let memory = [size_of::<GridHeader>(), size_of::<DispatchArguments>(), size_of::<Report>(), 16, 16, 16, 16];
     let memory = memory.map(|size| gpu.guarded("written by configure", size as u64));
-    let [scene, grid, arguments, report, cells, references, triangles, bricks] = &memory;
-    let memory = [partials, scene, grid, state, arguments, report, cells, references, triangles, bricks];
+    let [grid, arguments, report, cells, references, triangles, bricks] = &memory;
+    let memory = [partials, grid, state, arguments, report, cells, references, triangles, bricks];
     gpu.launch(&CONFIGURE, 0, &memory, &[1 << 20, 4.0_f32.to_bits(), 0, 0, 0, 2, 1], [1, 1, 1]);
-    scene.read(0, 1)[0]
+    let Report { triangles, dropped, box_min, box_max, .. } = report.read(0, 1)[0];
+    if triangles == dropped { Bounds { dropped, ..Bounds::EMPTY } } else { Bounds { low: box_min, dropped, high: box_max, reserved: 0 } }
 }
 
 /// The header that the twin makes for a mesh: good enough to test later steps, and the same for device and twin.

@@ -67,7 +67,7 @@ fn emit(gpu: &Gpu, header: &GridHeader, counted: &Counted, exact: bool, part: f6
     let device_triangles = gpu.upload("triangles", triangles);
     let device_state = gpu.upload("state", &[BuildState { pair_count, pass_count, ..*state }]);
     let [a, b, c, d] = ["keys a", "keys b", "values a", "values b"].map(|name| gpu.guarded(name, size));
-    let memory = [&grid, &device_state, &device_offsets, &device_boxes, &device_triangles, &a, &b, &c, &d];
+    let memory = [&grid, &device_state, &device_offsets, &device_boxes, &a, &b, &c, &d];
     let groups = split_workgroups(state.offset_count, shape.map_size);
     let runs = split_workgroups(pair_count.div_ceil(shape.emit_pairs), shape.map_size);
     gpu.launch(&OVERLAP_EMIT, 0, &memory, &[], groups);

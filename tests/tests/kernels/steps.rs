@@ -3,7 +3,7 @@
 use bytemuck::bytes_of;
 use gridwalk::plan::{Buffer, BuildInputs, Dispatch, Item, Source, Step, build_plan};
 use gridwalk::{BuildInfo, BuildOptions, Capacity, GeometryRecord, Overlap, Report};
-use gridwalk_core::layout::{BuildState, DispatchArguments, GridHeader};
+use gridwalk_core::layout::{BuildState, CELL_SPLIT, DispatchArguments, GridHeader};
 use gridwalk_core::split::refined;
 use gridwalk_core::twin::player::{Groups, Level, Memory, PlayedStep};
 use gridwalk_tests::gpu::{Built, CANARY, Gpu, Mesh};
@@ -12,11 +12,10 @@ use gridwalk_tests::meshes::{soup, spoil};
 use super::devices;
 use crate::rebuild::records::{Scene, placed};
 
-const COMPARED: [Buffer; 22] = [
+const COMPARED: [Buffer; 21] = [
     Buffer::Header,
     Buffer::State,
     Buffer::Arguments,
-    Buffer::SceneBounds,
     Buffer::BoundsPartials,
     Buffer::Triangles,
     Buffer::Offsets,
@@ -43,7 +42,6 @@ fn words(memory: &Memory, buffer: Buffer) -> &[u32] {
         Buffer::State => bytemuck::cast_slice(bytes_of(&memory.state)),
         Buffer::Arguments => bytemuck::cast_slice(bytes_of(&memory.arguments)),
         Buffer::Report => bytemuck::cast_slice(bytes_of(&memory.report)),
-        Buffer::SceneBounds => bytemuck::cast_slice(bytes_of(&memory.scene_bounds)),
         Buffer::BoundsPartials => bytemuck::cast_slice(&memory.bounds_partials),
         Buffer::Triangles => bytemuck::cast_slice(&memory.triangles),
         Buffer::Offsets => &memory.offsets,
@@ -116,16 +114,28 @@ fn played<'a>(step: &Step, words: &'a [u32]) -> PlayedStep<'a> {
 }
 
 /// Runs a build a step at a time and names the first step after which a buffer is not the player's.
-fn first_wrong_step(gpu: &Gpu, mesh: &Mesh, capacity: Capacity, options: BuildOptions, spoiled: Option<&str>) -> Option<String> {
+fn first_wrong_step(
+    gpu: &Gpu,
+    mesh: &Mesh,
+    capacity: Capacity,
+    options: BuildOptions,
+    after: impl FnMut(&str, &mut Memory),
+) -> Option<String> {
     let built = gpu.prepare(mesh, capacity, options);
     let positions = mesh.positions.iter().flatten().copied().collect();
     let indices = mesh.indices.iter().flatten().copied().collect();
     let source = Source::Mesh { triangle_count: mesh.indices.len() as u32, vertex_count: mesh.positions.len() as u32 };
-    first_wrong_step_of(gpu, &built, source, spoiled, |memory| (memory.positions, memory.indices) = (positions, indices))
+    first_wrong_step_of(gpu, &built, source, |memory| (memory.positions, memory.indices) = (positions, indices), after)
 }
 
-/// Likewise, of a build that is prepared; `given` puts its input into the player's memory.
-fn first_wrong_step_of(gpu: &Gpu, built: &Built, source: Source, spoiled: Option<&str>, given: impl FnOnce(&mut Memory)) -> Option<String> {
+/// Likewise, of a build that is prepared; `given` puts its input into the player's memory, and `after` is shown this after each kernel.
+fn first_wrong_step_of(
+    gpu: &Gpu,
+    built: &Built,
+    source: Source,
+    given: impl FnOnce(&mut Memory),
+    mut after: impl FnMut(&str, &mut Memory),
+) -> Option<String> {
     let shape = gpu.tracer.shape();
     let BuildInfo { capacity, options, second_level, .. } = built.info;
     let exact = options.overlap == Overlap::Exact;
@@ -147,9 +157,7 @@ fn first_wrong_step_of(gpu: &Gpu, built: &Built, source: Source, spoiled: Option
         if step.kernel.name == "configure" {
             adopt(gpu, built, &mut memory);
         }
-        if spoiled == Some(step.kernel.name) {
-            memory.offsets[1] ^= 1;
-        }
+        after(step.kernel.name, &mut memory);
         let wrong = COMPARED.into_iter().chain([Buffer::Report]).find_map(|buffer| first_difference(gpu, built, &memory, buffer));
         if let Some(wrong) = wrong {
             return Some(format!("step {index}, {}: {wrong}", step.kernel.name));
@@ -169,7 +177,7 @@ fn every_step_of_a_build_is_the_players() {
                 // Flat, with room for some of the leaf cells, and for all.
                 for leaf_cells in [0, 3_000, 60_000] {
                     let capacity = Capacity { triangles: 4_000, cells: 10_000, pairs: 160_000, leaf_cells };
-                    let wrong = first_wrong_step(gpu, &mesh, capacity, options, None);
+                    let wrong = first_wrong_step(gpu, &mesh, capacity, options, |_, _| ());
                     assert_eq!(wrong, None, "{leaf_cells}, {options:?} {:?}", gpu.tracer.shape());
                 }
             }
@@ -191,14 +199,58 @@ fn every_step_of_special_builds_is_the_players() {
         ("too many cells", soup(3_000, 0.05, 3), Capacity { cells: 1_000, ..room }, options),
         ("too many pairs of leaf cells", soup(3_000, 0.2, 2), Capacity { pairs: 50_000, ..room }, options),
         ("split into 32 x 32 x 32", soup(3_000, 0.01, 6), room, BuildOptions { resolution: Some([1, 2, 1]), ..options }),
-        ("a cell with too many pairs for one invocation", soup(2_000, 0.1, 7), Capacity { pairs: 1 << 19, ..room }, one_cell),
         ("fixed", soup(100, 0.3, 4), room, BuildOptions { resolution: Some([7, 30, 2]), ..options }),
         ("one cell", soup(500, 0.3, 5), room, one_cell),
     ];
     for (name, mesh, capacity, options) in cases {
         for overlap in [Overlap::Box, Overlap::Exact] {
-            let wrong = first_wrong_step(gpu, &mesh, capacity, BuildOptions { overlap, ..options }, None);
+            let wrong = first_wrong_step(gpu, &mesh, capacity, BuildOptions { overlap, ..options }, |_, _| ());
             assert_eq!(wrong, None, "{name}, {overlap:?}");
+        }
+    }
+}
+
+/// Cells beside one another along x: this many triangles of this size in each.
+fn row_of_cells(cells: &[(usize, f32)]) -> Mesh {
+    let mut all = Mesh::default();
+    for (cell, (count, size)) in cells.iter().enumerate() {
+        let mesh = soup(*count, *size, cell as u64);
+        let first = all.positions.len() as u32;
+        // A soup's middles lie between -1 and 1.
+        let reach = 1.0 + size + 0.01;
+        all.positions.extend(mesh.positions.iter().map(|[x, y, z]| [x / reach + 2.0 * cell as f32, y / reach, z / reach]));
+        all.indices.extend(mesh.indices.iter().map(|triangle| triangle.map(|vertex| first + vertex)));
+    }
+    all
+}
+
+/// Where an invocation of `leaf_sort` would take too many turns, the sort makes all lists, also those that other invocations have made.
+#[test]
+fn every_step_of_a_build_whose_leaf_cells_are_sorted_is_the_players() {
+    let capacity = Capacity { triangles: 4_000, cells: 100, pairs: 1 << 19, leaf_cells: 100_000 };
+    for gpu in devices().into_iter().filter(|gpu| gpu.tracer.shape().leaf_run > 0) {
+        for overlap in [Overlap::Box, Overlap::Exact] {
+            let long = (1_100, if overlap == Overlap::Box { 0.2 } else { 0.4 });
+            for cells in [&[long][..], &[(200, 0.2), (200, 0.2), (300, 0.1), (200, 0.2), long, (200, 0.2), (100, 0.1), (200, 0.1)]] {
+                let mesh = row_of_cells(cells);
+                let options = BuildOptions { resolution: Some([cells.len() as u32, 1, 1]), overlap, ..BuildOptions::default() };
+                let (mut made, mut is_sorted) = (0, false);
+                let wrong = first_wrong_step(gpu, &mesh, capacity, options, |kernel, memory| {
+                    if kernel == "leaf_sort" {
+                        made = memory.cells[..cells.len()].iter().filter(|range| range[1] & CELL_SPLIT != 0).count();
+                        is_sorted = memory.leaf_arguments.emit != [0; 4];
+                        eprintln!(
+                            "{made} {is_sorted} {overlap:?} {} {:?} {}",
+                            gpu.tracer.shape().leaf_run,
+                            memory.cells[..cells.len()].iter().map(|r| r[1]).collect::<Vec<_>>(),
+                            memory.report.leaf_pairs
+                        );
+                    }
+                });
+                let what = format!("{overlap:?}, {} cells, {:?}", cells.len(), gpu.tracer.shape());
+                assert_eq!(wrong, None, "{what}");
+                assert!(is_sorted && (cells.len() == 1 || (1..cells.len()).contains(&made)), "{what}: {made} made");
+            }
         }
     }
 }
@@ -226,9 +278,8 @@ fn every_step_of_a_build_of_records_is_the_players() {
             let capacity = Capacity { triangles, cells: 20_000, pairs, leaf_cells: 40_000 };
             let (built, _records) = scene.prepare(gpu, capacity, BuildOptions { density: 1.0, ..BuildOptions::default() });
             let source = Source::Records { record_count: scene.records.len() as u32 };
-            let wrong = first_wrong_step_of(gpu, &built, source, None, |memory| {
-                (memory.records, memory.addressed) = (scene.records.clone(), scene.memory.clone());
-            });
+            let given = |memory: &mut Memory| (memory.records, memory.addressed) = (scene.records.clone(), scene.memory.clone());
+            let wrong = first_wrong_step_of(gpu, &built, source, given, |_, _| ());
             assert_eq!(wrong, None, "{capacity:?} {:?}", gpu.tracer.shape());
         }
     }
@@ -237,6 +288,10 @@ fn every_step_of_a_build_of_records_is_the_players() {
 #[test]
 fn a_wrong_step_is_named() {
     let mesh = soup(100, 0.1, 23);
-    let wrong = first_wrong_step(Gpu::shared(), &mesh, mesh.capacity(), BuildOptions::default(), Some("overlap_count"));
+    let wrong = first_wrong_step(Gpu::shared(), &mesh, mesh.capacity(), BuildOptions::default(), |kernel, memory| {
+        if kernel == "overlap_count" {
+            memory.offsets[1] ^= 1;
+        }
+    });
     assert!(wrong.as_deref().is_some_and(|wrong| wrong.contains("overlap_count: Offsets word 1")), "{wrong:?}");
 }

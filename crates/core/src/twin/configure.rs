@@ -40,8 +40,8 @@ pub struct Configure {
 }
 
 /// The union of the boxes of all tiles: the scene box.
-pub fn unite_bounds(partials: &[Bounds], scene: &mut Bounds, partial_count: u32) {
-    *scene = partials[..partial_count as usize].iter().copied().fold(Bounds::EMPTY, unite);
+pub fn unite_bounds(partials: &[Bounds], partial_count: u32) -> Bounds {
+    partials[..partial_count as usize].iter().copied().fold(Bounds::EMPTY, unite)
 }
 
 fn cells_for(relative: Vec3, limit: Vec3, s: f32) -> f32 {

@@ -100,10 +100,10 @@ pub fn leaf_emit(shape: &Shape, groups: [u32; 3], leaves: &Leaves, references: &
         if place == 0 && split.level != 0 {
             cells[split.cell as usize] = [leaves.state.first_cell + split.leaf_begin, CELL_SPLIT | split.level];
         }
-        let vertex = references[(split.list_begin + place) as usize];
-        for (cells, n) in leaves.overlapped(split, vertex).into_iter().flat_map(|(cells, all)| all.into_iter().map(move |n| (cells, n))) {
+        let row = references[(split.list_begin + place) as usize];
+        for (cells, n) in leaves.overlapped(split, row).into_iter().flat_map(|(cells, all)| all.into_iter().map(move |n| (cells, n))) {
             let local = cells.cell(n).map(|i| i & ((1 << split.level) - 1));
-            pairs.push((split.leaf_begin + cell_id(local, [1 << split.level; 3]), vertex));
+            pairs.push((split.leaf_begin + cell_id(local, [1 << split.level; 3]), row));
         }
     }
     pairs

@@ -60,12 +60,12 @@ pub fn leaf_sort(
             let mut lists = vec![Vec::new(); leaf_count_of(split.level) as usize];
             for place in 0..split.list_length {
                 let reference = (split.first_reference + place) as usize;
-                let vertex = references[(split.list_begin + place) as usize];
+                let row = references[(split.list_begin + place) as usize];
                 if boxes[reference] == LARGE_LEAF_BOX {
                     let pairs = offsets[reference]..offsets[reference + 1];
-                    pairs.for_each(|pair| lists[(masks[(state.first_pair + pair) as usize] - split.leaf_begin) as usize].push(vertex));
+                    pairs.for_each(|pair| lists[(masks[(state.first_pair + pair) as usize] - split.leaf_begin) as usize].push(row));
                 } else {
-                    small_box(boxes[reference], masks[reference]).for_each(|leaf| lists[leaf as usize].push(vertex));
+                    small_box(boxes[reference], masks[reference]).for_each(|leaf| lists[leaf as usize].push(row));
                 }
             }
             let mut next = (state.first_pair + offsets[split.first_reference as usize]) as usize;

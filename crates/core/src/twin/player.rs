@@ -82,7 +82,6 @@ pub struct Memory {
     pub report: Report,
     pub state: BuildState,
     pub arguments: DispatchArguments,
-    pub scene_bounds: Bounds,
     pub bounds_partials: Vec<Bounds>,
     pub offsets: Vec<u32>,
     pub cell_boxes: Vec<[u32; 3]>,
@@ -140,7 +139,6 @@ impl Memory {
             report: filled(word),
             state: filled(word),
             arguments: filled(word),
-            scene_bounds: filled(word),
             bounds_partials: vec![filled(word); shape.bounds_tiles(triangles) as usize],
             offsets: vec![word; offsets],
             cell_boxes: vec![[word; 3]; triangles.max(1) as usize],
@@ -195,7 +193,7 @@ impl Memory {
                 gather_records(shape, groups, &self.addressed, &self.records, firsts, triangle_count, triangles, partials);
             }
             "configure" => {
-                unite_bounds(&self.bounds_partials, &mut self.scene_bounds, shape.bounds_tiles(triangle_count));
+                let scene = unite_bounds(&self.bounds_partials, shape.bounds_tiles(triangle_count));
                 let info = Configure {
                     triangle_count,
                     cell_capacity: words[0],
@@ -204,10 +202,10 @@ impl Memory {
                     splits: words[5] > 1,
                     exact: words[6] != 0,
                 };
-                let (header, density, overflow) = configure_header(&info, &self.scene_bounds, addresses);
+                let (header, density, overflow) = configure_header(&info, &scene, addresses);
                 self.header = header;
-                let (scene, state, arguments, report) = (&self.scene_bounds, &mut self.state, &mut self.arguments, &mut self.report);
-                configure_state(shape, &info, scene, &header, density, overflow, state, arguments, report);
+                let (state, arguments, report) = (&mut self.state, &mut self.arguments, &mut self.report);
+                configure_state(shape, &info, &scene, &header, density, overflow, state, arguments, report);
             }
             "clear_bricks" => clear_bricks(shape, groups, resolution, &mut self.distances_x),
             "clear_cells" => clear_cells(shape, groups, resolution, &self.distances_x, &mut self.cells),
