@@ -3,6 +3,7 @@
 use crate::{
     Error, Result,
     device::{Candidate, DeviceInfo, DeviceKind, DeviceSelector, Instance, RAY_QUERY_EXTENSIONS},
+    host_memory::{self, HostMemory, Importer},
 };
 use ash::{ext, vk};
 use bytemuck::{AnyBitPattern, NoUninit};
@@ -72,6 +73,8 @@ pub struct Context {
 struct Shared {
     /// `None` only while dropping.
     allocator: Mutex<Option<Allocator>>,
+    /// On a CPU driver, for large buffers.
+    importer: Option<Importer>,
     commands: Mutex<Commands>,
     /// Held for the submission alone, not while it is waited for, so that another thread can submit copies beside it.
     queue: Mutex<vk::Queue>,
@@ -179,6 +182,7 @@ impl Context {
         // From here on `Shared` owns all that was made, and frees it whatever fails below: destroying null handles is allowed.
         let mut shared = Shared {
             allocator: Mutex::new(None),
+            importer: Importer::new(&instance.raw, &device, &candidate),
             commands: Mutex::new(Commands { pool: vk::CommandPool::null(), buffer: vk::CommandBuffer::null(), fence: vk::Fence::null() }),
             queue: Mutex::new(vk::Queue::null()),
             copy_queue: candidate.copy_family.map(|_| Mutex::new(vk::Queue::null())),
@@ -315,7 +319,12 @@ impl Context {
                 | vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
         }
         let sharing = if families.is_empty() { vk::SharingMode::EXCLUSIVE } else { vk::SharingMode::CONCURRENT };
-        let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(sharing).queue_family_indices(families);
+        let importer = self.shared.importer.as_ref().filter(|importer| desc.kind == BufferKind::Device && importer.takes(size));
+        let mut external = vk::ExternalMemoryBufferCreateInfo::default().handle_types(host_memory::HANDLE_TYPE);
+        let mut info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(sharing).queue_family_indices(families);
+        if importer.is_some() {
+            info = info.push_next(&mut external);
+        }
         let device = &self.shared.device;
         // SAFETY: the device lives; size and usage are valid, and the size is within the device's limit.
         let raw = unsafe { device.create_buffer(&info, None) }.map_err(|result| match result {
@@ -324,29 +333,37 @@ impl Context {
         })?;
         // Owns what exists so far; an early return destroys it.
         let mut buffer =
-            Buffer { shared: Arc::clone(&self.shared), name: desc.name.to_owned(), raw, size, address: 0, allocation: None, counted: 0 };
+            Buffer { shared: Arc::clone(&self.shared), name: desc.name.to_owned(), raw, size, address: 0, memory: None, counted: 0 };
         // SAFETY: the buffer belongs to this device.
         let mut requirements = unsafe { device.get_buffer_memory_requirements(raw) };
         requirements.alignment = requirements.alignment.max(gridwalk::REGION_ALIGNMENT);
-        let location = match desc.kind {
-            BufferKind::Device => MemoryLocation::GpuOnly,
-            BufferKind::Upload => MemoryLocation::CpuToGpu,
-            BufferKind::Readback => MemoryLocation::GpuToCpu,
-        };
-        let allocation_scheme = if desc.dedicated { AllocationScheme::DedicatedBuffer(raw) } else { AllocationScheme::GpuAllocatorManaged };
-        let allocation = {
-            let mut allocator = lock(&self.shared.allocator);
-            let allocator = allocator.as_mut().ok_or(Error::DeviceLost)?;
-            allocator.allocate(&AllocationCreateDesc { name: desc.name, requirements, location, linear: true, allocation_scheme }).map_err(
-                |error| match error {
+        let memory = match importer {
+            Some(importer) => Memory::OfHost(importer.allocate(device, &requirements, desc.name, out_of_memory)?),
+            None => {
+                let location = match desc.kind {
+                    BufferKind::Device => MemoryLocation::GpuOnly,
+                    BufferKind::Upload => MemoryLocation::CpuToGpu,
+                    BufferKind::Readback => MemoryLocation::GpuToCpu,
+                };
+                let allocation_scheme =
+                    if desc.dedicated { AllocationScheme::DedicatedBuffer(raw) } else { AllocationScheme::GpuAllocatorManaged };
+                let request = AllocationCreateDesc { name: desc.name, requirements, location, linear: true, allocation_scheme };
+                let mut allocator = lock(&self.shared.allocator);
+                let allocator = allocator.as_mut().ok_or(Error::DeviceLost)?;
+                Memory::Allocated(allocator.allocate(&request).map_err(|error| match error {
                     AllocationError::OutOfMemory => out_of_memory(),
                     other => Error::Allocator { name: desc.name.to_owned(), reason: other.to_string() },
-                },
-            )?
+                })?)
+            }
         };
-        // SAFETY: the memory belongs to the allocation, which lives as long as the buffer and is bound to it alone at this offset.
-        let bound = unsafe { device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
-        buffer.allocation = Some(allocation);
+        let (raw_memory, offset) = match &memory {
+            // SAFETY: the allocation is not freed while the buffer has it.
+            Memory::Allocated(allocation) => (unsafe { allocation.memory() }, allocation.offset()),
+            Memory::OfHost(memory) => (memory.raw(), 0),
+        };
+        // SAFETY: the memory lives as long as the buffer and is bound to it alone at this offset.
+        let bound = unsafe { device.bind_buffer_memory(raw, raw_memory, offset) };
+        buffer.memory = Some(memory);
         buffer.counted = size;
         let now = self.shared.allocated.fetch_add(size, Ordering::Relaxed) + size;
         self.shared.peak.fetch_max(now, Ordering::Relaxed);
@@ -661,8 +678,13 @@ pub struct Buffer {
     raw: vk::Buffer,
     size: u64,
     address: vk::DeviceAddress,
-    allocation: Option<Allocation>,
+    memory: Option<Memory>,
     counted: u64,
+}
+
+enum Memory {
+    Allocated(Allocation),
+    OfHost(HostMemory),
 }
 
 impl fmt::Debug for Buffer {
@@ -716,15 +738,15 @@ impl Buffer {
 
     /// Where the host sees the memory, if it does without flushes; `cached` asks for memory that is fast to read.
     fn mapped(&self, cached: bool) -> Option<*mut u8> {
-        let allocation = self.allocation.as_ref()?;
+        let (properties, pointer) = match self.memory.as_ref()? {
+            Memory::Allocated(allocation) => (allocation.memory_properties(), allocation.mapped_ptr()?.as_ptr().cast()),
+            Memory::OfHost(memory) => (memory.properties(), memory.pointer()),
+        };
         let mut wanted = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
         if cached {
             wanted |= vk::MemoryPropertyFlags::HOST_CACHED;
         }
-        if !allocation.memory_properties().contains(wanted) {
-            return None;
-        }
-        allocation.mapped_ptr().map(|pointer| pointer.as_ptr().cast())
+        properties.contains(wanted).then_some(pointer)
     }
 
     /// Copies data into the buffer, `offset` bytes from its beginning (a multiple of 4).
@@ -838,19 +860,25 @@ impl Context {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        let allocation = self.allocation.take();
+        let memory = self.memory.take();
         self.shared.allocated.fetch_sub(self.counted, Ordering::Relaxed);
         if self.shared.abandoned.load(Ordering::Acquire) {
-            std::mem::forget(allocation);
+            std::mem::forget(memory);
             return;
         }
+        let device = &self.shared.device;
         // SAFETY: every submission that used the buffer was waited for.
-        unsafe { self.shared.device.destroy_buffer(self.raw, None) };
-        if let Some(allocation) = allocation
-            && let Some(allocator) = lock(&self.shared.allocator).as_mut()
-        {
-            // The allocator refuses only what it did not allocate.
-            let _ = allocator.free(allocation);
+        unsafe { device.destroy_buffer(self.raw, None) };
+        match memory {
+            Some(Memory::Allocated(allocation)) => {
+                if let Some(allocator) = lock(&self.shared.allocator).as_mut() {
+                    // The allocator refuses only what it did not allocate.
+                    let _ = allocator.free(allocation);
+                }
+            }
+            // SAFETY: the buffer, which alone was bound to it, is gone.
+            Some(Memory::OfHost(memory)) => unsafe { memory.free(device) },
+            None => {}
         }
     }
 }
@@ -928,6 +956,30 @@ mod tests {
     }
 
     #[test]
+    fn large_buffers_of_a_cpu_driver_lie_in_memory_of_the_host() {
+        let context = context();
+        let make = |name, size, kind| context.buffer(&BufferDesc { name, size, kind, dedicated: true }).unwrap();
+        let is_of_host = |buffer: &Buffer| matches!(buffer.memory, Some(Memory::OfHost(_)));
+        let size = 2 * host_memory::HUGE_PAGE + 4;
+        let large = make("large", size, BufferKind::Device);
+        let small = make("small", 4096, BufferKind::Device);
+        assert_eq!(is_of_host(&large), context.shared.candidate.imports_host_memory);
+        assert!(!is_of_host(&small) && !is_of_host(&make("staging", size, BufferKind::Upload)));
+        assert!(!is_of_host(&large) || large.mapped(true).unwrap().addr() % host_memory::HUGE_PAGE as usize == 0);
+        // To the last bytes, from the host and from the device.
+        large.write(size - 8, &[1_u32, 2]).unwrap();
+        small.write(0, &[3_u32]).unwrap();
+        context.copy(&small, 0, &large, size - 4, 4).unwrap();
+        context.copy(&large, size - 8, &small, 8, 8).unwrap();
+        assert_eq!(large.read::<u32>(size - 8, 2).unwrap(), [1, 3]);
+        assert_eq!(small.read::<u32>(8, 2).unwrap(), [1, 3]);
+        let again: Vec<_> = (0..8).map(|_| make("again", 64 << 20, BufferKind::Device)).collect();
+        drop((again, large, small));
+        assert_eq!(context.allocated_bytes(), 0);
+        assert_eq!(context.take_validation_messages(), Vec::<String>::new());
+    }
+
+    #[test]
     fn an_error_while_recording_leaves_the_context_usable() {
         let context = context();
         let failed = context.submit("nothing", |_| Err::<(), _>(Error::Interrupted));
@@ -973,6 +1025,7 @@ mod tests {
             })
             .unwrap();
         let messages = context.take_validation_messages();
-        assert!(messages.iter().any(|message| message.contains("SYNC-HAZARD")), "{messages:?}");
+        // "SYNC-HAZARD-READ-AFTER-WRITE", or in newer layers "READ_AFTER_WRITE hazard".
+        assert!(messages.iter().any(|message| message.to_lowercase().contains("hazard")), "{messages:?}");
     }
 }

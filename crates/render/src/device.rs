@@ -1,6 +1,6 @@
 //! Vulkan instance and devices: what there is, what it lacks, which one to take.
 
-use crate::{Error, Result};
+use crate::{Error, Result, host_memory};
 use ash::{ext, khr, vk};
 use std::{
     ffi::{CStr, c_void},
@@ -209,11 +209,13 @@ pub(crate) struct Candidate {
     pub(crate) copy_family: Option<u32>,
     pub(crate) copy_timestamp_bits: u32,
     pub(crate) has_host_query_reset: bool,
-    /// Extensions to enable: those that must be when they are there, and the memory budget.
+    /// Extensions to enable: those that must be when they are there, the memory budget, and the import of memory of the host.
     pub(crate) extensions: Vec<&'static CStr>,
     pub(crate) has_budget: bool,
     /// Whether it offers acceleration structures and ray queries of its own.
     pub(crate) has_ray_query: bool,
+    /// Whether large buffers are to lie in memory of the host.
+    pub(crate) imports_host_memory: bool,
 }
 
 /// What acceleration structures and ray queries of a device need to be enabled.
@@ -382,7 +384,15 @@ impl Instance {
             unsafe { self.raw.get_physical_device_features2(handle, &mut features) };
             has_ray_query = structures.acceleration_structure == vk::TRUE && queries.ray_query == vk::TRUE;
         }
+        let kind = DeviceKind::new(core.device_type);
+        let imports_host_memory = cfg!(target_os = "linux")
+            && kind == DeviceKind::Cpu
+            && has(ext::external_memory_host::NAME)
+            && self.can_import_host_memory(handle);
         let mut extensions = Vec::new();
+        if imports_host_memory {
+            extensions.push(ext::external_memory_host::NAME);
+        }
         if has_budget {
             extensions.push(ext::memory_budget::NAME);
         }
@@ -403,7 +413,7 @@ impl Instance {
         let info = DeviceInfo {
             index,
             name: text(core.device_name_as_c_str().map_err(drop)),
-            kind: DeviceKind::new(core.device_type),
+            kind,
             driver_name: text(vulkan12.driver_name_as_c_str().map_err(drop)),
             driver_info: text(vulkan12.driver_info_as_c_str().map_err(drop)),
             driver_version: core.driver_version,
@@ -435,7 +445,25 @@ impl Instance {
             extensions,
             has_budget,
             has_ray_query,
+            imports_host_memory,
         })
+    }
+
+    /// Whether storage buffers may lie in memory of the host that begins and ends with huge pages.
+    fn can_import_host_memory(&self, handle: vk::PhysicalDevice) -> bool {
+        let mut limits = vk::PhysicalDeviceExternalMemoryHostPropertiesEXT::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut limits);
+        let info = vk::PhysicalDeviceExternalBufferInfo::default()
+            .usage(vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS)
+            .handle_type(host_memory::HANDLE_TYPE);
+        let mut buffers = vk::ExternalBufferProperties::default();
+        // SAFETY: the handle comes from this instance; the device has the extension, so it knows struct and type.
+        unsafe {
+            self.raw.get_physical_device_properties2(handle, &mut properties);
+            self.raw.get_physical_device_external_buffer_properties(handle, &info, &mut buffers);
+        }
+        buffers.external_memory_properties.external_memory_features.contains(vk::ExternalMemoryFeatureFlags::IMPORTABLE)
+            && limits.min_imported_host_pointer_alignment <= host_memory::HUGE_PAGE
     }
 
     /// The device that the selector names; only `Best` and `Cpu` pass over those that cannot serve.

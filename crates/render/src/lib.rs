@@ -36,6 +36,7 @@ mod device;
 mod error;
 mod estimate;
 mod grid;
+mod host_memory;
 pub mod image;
 pub mod kernels;
 mod layers;

@@ -1,6 +1,6 @@
 //! Masks, culling and geometry ids, against a search through all triangles.
 
-use gridwalk::{BuildOptions, Cull, GeometryRecord, Hit, MISS, Ray, Region, TraceInfo};
+use gridwalk::{BuildOptions, Cull, GeometryRecord, Hit, MISS, Ray, Region, Shape, TraceInfo};
 use gridwalk_core::geometry::{FLAG_FLIP_FACING, FLAG_TWO_SIDED};
 use gridwalk_core::intersect::{Intersection, hit_distance, intersect_triangle, move_ray};
 use gridwalk_core::twin::closest_candidate::{gridwalk_candidates_filtered, gridwalk_commit, gridwalk_committed, gridwalk_next};
@@ -75,7 +75,16 @@ fn cull_of(cull: u32) -> Cull {
 
 #[test]
 fn masks_and_culling_are_those_of_a_full_search() {
-    let gpu = Gpu::shared();
+    for_masks_and_culling(Gpu::with_shape(Shape::CPU));
+}
+
+/// Rays load the rows of triangles otherwise there.
+#[test]
+fn masks_and_culling_on_a_gpu_are_those_of_a_full_search() {
+    for_masks_and_culling(Gpu::with_shape(Shape::GPU));
+}
+
+fn for_masks_and_culling(gpu: &Gpu) {
     let scene = scene(gpu);
     let (built, _, rays) = built(gpu, &scene);
     let copy = built.copy();

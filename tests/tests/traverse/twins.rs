@@ -1,6 +1,6 @@
 //! The trace kernels against their twins, and the walk's invariant in double precision.
 
-use gridwalk::{BuildOptions, Hit, Overlap, Ray};
+use gridwalk::{BuildOptions, Hit, Overlap, Ray, Shape};
 use gridwalk_core::intersect::{Intersection, move_ray};
 use gridwalk_core::layout::{TraceState, WalkState};
 use gridwalk_core::twin::any_hit::any_hit_of;
@@ -121,6 +121,25 @@ fn the_kernels_agree_with_their_twins() {
             let few = &rays[..300];
             assert_eq!(differences_from_twin(gpu, &gpu.brute_force(&built, few), &brute_force(&grid, few)), [0; 0], "{label}: brute force");
         }
+    }
+}
+
+/// A CPU loads the rows of triangles otherwise than a GPU, and each runs one way alone.
+#[test]
+fn the_kernels_of_both_kinds_of_devices_agree() {
+    let [cpu, other] = [Shape::CPU, Shape::GPU].map(Gpu::with_shape);
+    assert_ne!(cpu.tracer.shape().by_two, other.tracer.shape().by_two);
+    for (name, mesh) in [("soup", meshes::soup(400, 0.3, 25)), ("sphere", meshes::sphere([0.3, -0.1, 0.2], 1.0, 24))] {
+        let grids = [cpu, other].map(|gpu| super::build(gpu, &mesh, BuildOptions::default()));
+        let copy = grids[1].copy();
+        let mut rays = rays::random_rays(&mesh, 3_000, 26);
+        rays.extend(rays::diffuse_rays(&mesh, 1_000, 27));
+        let expected = closest_hits(&copy.view(), &rays);
+        let [by_cpu, by_other] = [(cpu, &grids[0]), (other, &grids[1])].map(|(gpu, grid)| (gpu.closest(grid, &rays), gpu.any(grid, &rays)));
+        assert_eq!(differences_from_twin(other, &by_other.0, &expected), [0; 0], "{name}");
+        assert_eq!(differences(&by_other.0, &by_cpu.0), [0; 0], "{name}");
+        assert_eq!(by_other.1, by_cpu.1, "{name}: any");
+        assert!(expected.iter().filter(|hit| hit.is_hit()).count() > 500, "{name}");
     }
 }
 
