@@ -30,9 +30,9 @@ layout(push_constant, std430) uniform LeafSort {
 };
 
 // Turns of an invocation's loops, at most: a run has LEAF_RUN before its last split cell, and that the rest. lavapipe ends loops after 65,535 turns
-// of a subgroup, whose lanes wait in each loop for the one that takes most: one lane's references and pairs and another's leaf cells may come
-// together. Leaf cells are at most two thirds of a lane's work, where lists of 1,024 triangles have 32^3; so these are 32,000 + 21,333, and some
-// 800 of the searches and of the records.
+// of a subgroup, whose lanes wait in each loop for the one that takes most: so one lane's references and pairs count, and another's leaf cells.
+// Those are at most two thirds of the work, where lists of 1,024 triangles have 32^3 leaf cells: of a LEAF_RUN of 16,000, and 4,096 turns of the
+// last split cell. With some 800 of the searches and of the records these are 47,600 in all.
 const uint MOST_WORK = 32000u;
 
 // The turns that split cells take: references are passed by twice, two pairs of one in a turn, and eight leaf cells in a turn once.

@@ -137,9 +137,9 @@ fn lists_that_are_long_for_an_invocation() {
             let mut split = Split::default();
             (0..30).for_each(|_| split.push(1, 30, 0, random));
             let work = |split: &Split| split.pairs + 2 * split.lists.len() as u32 + split.leaf_cells / 8;
-            let before = work(&split) + leaf_count_of(3) / 8;
+            let begin = work(&split) / shape.leaf_run * shape.leaf_run;
             split.push(3, 24, 0, random);
-            while work(&split) - before < most {
+            while work(&split) - begin < most {
                 let more = &mut Split::default();
                 more.push(3, 1, 60, random);
                 let record = split.records.last_mut().unwrap();
@@ -156,9 +156,9 @@ fn lists_that_are_long_for_an_invocation() {
             (0..30).for_each(|_| split.push(2, 50, 0, random));
             split
         };
-        let longest = filled(&mut random, 31_400 - shape.leaf_run);
+        let longest = filled(&mut random, 31_800);
         assert!(!check(gpu, &longest, "long"));
-        let longer = filled(&mut random, 32_100);
+        let longer = filled(&mut random, 32_400);
         assert!(check(gpu, &longer, "too long"));
     }
 }

@@ -129,7 +129,7 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
     let leaf_cells = if report.leaf_pairs > 0 { report.leaf_cells.min(field.ours.grid().capacity().leaf_cells) } else { 0 };
     let fitted = Capacity { triangles: report.triangles, cells: report.cells, pairs, leaf_cells };
     let fitted = field.ours.grid().tracer()?.build_sizes(&fitted).map_err(gridwalk_render::Error::from)?;
-    // The second level's pairs pass through the sort only where an invocation does not count them by itself.
+    // On a CPU the second level's pairs pass through the sort only where `leaf_sort` leaves them to it, which no report tells.
     let alone = field.ours.grid().tracer()?.shape().leaf_run > 0;
     let sorted = |count: u32| if alone { 0 } else { count.into() };
     let size = Size {
