@@ -3,32 +3,32 @@
 use crate::kernel::Kernel;
 
 /// Workgroup sizes and elements an invocation. Two kinds of devices want the opposite: a CPU few invocations with long runs, a GPU many
-/// with short ones.
+/// with short ones. The bounds keep what an invocation does for its own elements to about 32,768 turns of its loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     /// Invocations a workgroup of the map kernels; no size of a workgroup is above 256.
     pub map_size: u32,
     /// Invocations a workgroup of the reductions and the scan; a power of two.
     pub scan_size: u32,
-    /// Elements an invocation of the scan; no number of elements an invocation is above 32,767.
+    /// Elements an invocation of the scan, which passes by them twice, at most 8,000.
     pub scan_items: u32,
-    /// Triangles an invocation of the gathering, which reduces the scene box.
+    /// Triangles an invocation of the gathering, which reduces the scene box, at most 1,800: a search for its record takes 17 turns.
     pub reduce_items: u32,
-    /// Bricks an invocation of `brick_reduce`.
+    /// Bricks an invocation of `brick_reduce`, at most 90: `split_cells` takes 170 turns for one, beside 16,384 for all references.
     pub reduce_bricks: u32,
     /// Most bits a digit of the sort, at least 4; 2^`sort_bits` <= 8 * [`Shape::sort_tile`].
     pub sort_bits: u32,
     /// Invocations a workgroup of the sort and of `leaf_sort`; 2^`sort_bits` * `sort_size` <= 8,192 unless `sort_alone`.
     pub sort_size: u32,
-    /// Keys an invocation of the sort.
+    /// Keys an invocation of the sort, at most 8,192 unless `sort_alone`.
     pub sort_keys: u32,
     /// Whether an invocation's keys are a tile of the sort, counted in a private array; otherwise those of a workgroup are, in shared
     /// memory. 2^`sort_bits` + `sort_keys` <= 16,384 then, and no more than 32,768 * `sort_keys` pairs or rays are sorted.
     pub sort_alone: bool,
     /// Pairs an invocation of the emission of large boxes, at most 700: each takes 44 turns at most, one, 27 of a search and those of 16 lanes
-    /// one after another, and 32,768 of them keep to the budget of its loops.
+    /// one after another.
     pub emit_pairs: u32,
-    /// Pairs an invocation of `cell_ranges`.
+    /// Pairs an invocation of `cell_ranges`, at most 32,767.
     pub range_pairs: u32,
     /// Turns that an invocation of `leaf_sort` takes for the split cells before its last, at most 16,000: one for a pair, two for a reference,
     /// one for eight leaf cells. 0: the pairs of leaf cells are sorted all together.
@@ -75,11 +75,17 @@ impl Shape {
     /// Whether the fields keep to what is said of them: kernels cut otherwise would not fit into shared memory, or give wrong results.
     pub fn is_valid(&self) -> bool {
         let sizes = [self.map_size, self.scan_size, self.sort_size];
-        let items = [self.scan_items, self.reduce_items, self.reduce_bricks, self.sort_keys, self.range_pairs];
+        let items = [
+            (self.scan_items, 8_000),
+            (self.reduce_items, 1_800),
+            (self.reduce_bricks, 90),
+            (self.sort_keys, if self.sort_alone { 16_384 } else { 8_192 }),
+            (self.emit_pairs, 700),
+            (self.range_pairs, 32_767),
+        ];
         let digits = |bits: u32| 1_u32 << bits;
         sizes.iter().all(|size| (1..=256).contains(size))
-            && items.iter().all(|items| (1..=32_767).contains(items))
-            && (1..=700).contains(&self.emit_pairs)
+            && items.iter().all(|(items, most)| (1..=*most).contains(items))
             && self.leaf_run <= 16_000
             && self.scan_size.is_power_of_two()
             // Fewer bits need more passes than a plan records.
@@ -218,12 +224,16 @@ mod tests {
         let (cpu, gpu) = (Shape::CPU, Shape::GPU);
         assert!(cpu.is_valid() && gpu.is_valid());
         assert!(Shape { sort_size: 4, sort_keys: 1, ..gpu }.is_valid());
-        assert!(Shape { emit_pairs: 700, ..gpu }.is_valid());
+        assert!(Shape { scan_items: 8_000, reduce_items: 1_800, reduce_bricks: 90, sort_keys: 8_192, emit_pairs: 700, ..gpu }.is_valid());
         let wrong = [
             Shape { map_size: 0, ..cpu },
             Shape { map_size: 257, ..cpu },
             Shape { scan_size: 24, ..cpu },
             Shape { scan_items: 0, ..cpu },
+            Shape { scan_items: 8_001, ..cpu },
+            Shape { reduce_items: 1_801, ..cpu },
+            Shape { reduce_bricks: 91, ..gpu },
+            Shape { sort_keys: 8_193, ..gpu },
             Shape { emit_pairs: 701, ..gpu },
             Shape { emit_pairs: 0, ..cpu },
             Shape { range_pairs: 32_768, ..cpu },
