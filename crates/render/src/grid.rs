@@ -94,8 +94,9 @@ const FIRST_PAIRS_EACH: u64 = 4;
 /// Below it the triangles themselves are what does not fit.
 const LEAST_DENSITY: f32 = 0.1;
 
-/// Builds that are tried at ever lower densities when a grid does not fit.
-const MAX_ATTEMPTS: u32 = 12;
+/// Builds that are tried at ever lower densities when a grid does not fit: enough to halve the greatest density down to the least, and some for
+/// what a build counts.
+const MAX_ATTEMPTS: u32 = 40;
 
 impl std::fmt::Debug for GridBuilder {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -199,7 +200,8 @@ impl GridBuilder {
                 }
                 // Fewer cells need fewer pairs: a coarser grid is better than none.
                 Err(Error::OutOfDeviceMemory { .. }) if settings.resolution.is_none() && settings.density > LEAST_DENSITY => {
-                    settings.density /= 8.0;
+                    // A density may ask for more cells than any grid has.
+                    settings.density = settings.density.min(capacity.cells as f32 / triangles.max(1) as f32) / 2.0;
                     pairs = first_pairs;
                     continue;
                 }

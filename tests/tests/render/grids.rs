@@ -33,9 +33,16 @@ fn a_grid_that_does_not_fit_is_made_coarser() {
     let grid = builder.build(&gpu, &BuildSettings { density: 50.0, ..BuildSettings::default() }).unwrap();
     let stats = grid.stats();
     assert!(stats.attempts > 2 && stats.report.density < 50.0 && !stats.report.pairs_overflowed(), "{stats:?}");
+    let first = stats.report.density;
+    drop(grid);
+    // However much was asked for, and down to the half of what fits at worst: so two of them differ by less than 2.
+    for density in [f32::MAX, 1e4, 31.0] {
+        let grid = builder.build(&gpu, &BuildSettings { density, ..BuildSettings::default() }).unwrap();
+        let report = grid.stats().report;
+        assert!(!report.pairs_overflowed() && (0.5..=2.0).contains(&(report.density / first)), "{density}: {report:?}, {first} from 50");
+    }
     // A resolution is what was asked for, or an error.
     let exact = BuildSettings { resolution: Some([60, 60, 60]), ..BuildSettings::default() };
-    drop(grid);
     let error = builder.build(&gpu, &exact).unwrap_err();
     assert!(matches!(error, Error::OutOfDeviceMemory { .. }), "{error}");
     assert!(context.peak_bytes() <= 16 << 20);
