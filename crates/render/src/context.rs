@@ -2,7 +2,7 @@
 
 use crate::{
     Error, Result,
-    device::{Candidate, DeviceInfo, DeviceKind, DeviceSelector, Instance, RAY_QUERY_EXTENSIONS},
+    device::{Candidate, DeviceInfo, DeviceKind, DeviceSelector, Instance, RAY_QUERY_EXTENSIONS, buffer_usage},
     host_memory::{self, HostMemory, Importer},
 };
 use ash::{ext, vk};
@@ -300,6 +300,15 @@ impl Context {
     }
 
     fn make_buffer(&self, desc: &BufferDesc<'_>, families: &[u32]) -> Result<Buffer> {
+        let importer = self.shared.importer.as_ref().filter(|_| desc.kind == BufferKind::Device);
+        match self.make_bound(desc, families, importer) {
+            // What memory of the host is refused for need not hold for the driver's own.
+            Err(Error::Vulkan { .. } | Error::Allocator { .. }) if importer.is_some() => self.make_bound(desc, families, None),
+            made => made,
+        }
+    }
+
+    fn make_bound(&self, desc: &BufferDesc<'_>, families: &[u32], importer: Option<&Importer>) -> Result<Buffer> {
         self.shared.check()?;
         let size = desc.size.max(16).next_multiple_of(16);
         let limits = &self.shared.candidate.info.limits;
@@ -309,19 +318,14 @@ impl Context {
         if size > available {
             return Err(out_of_memory());
         }
-        let mut usage = vk::BufferUsageFlags::STORAGE_BUFFER
-            | vk::BufferUsageFlags::TRANSFER_SRC
-            | vk::BufferUsageFlags::TRANSFER_DST
-            | vk::BufferUsageFlags::INDIRECT_BUFFER
-            | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
-        if self.shared.has_ray_query {
-            usage |= vk::BufferUsageFlags::ACCELERATION_STRUCTURE_STORAGE_KHR
-                | vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
-        }
+        let importer = importer.filter(|importer| importer.bytes_for(size).is_some_and(|bytes| bytes <= available));
         let sharing = if families.is_empty() { vk::SharingMode::EXCLUSIVE } else { vk::SharingMode::CONCURRENT };
-        let importer = self.shared.importer.as_ref().filter(|importer| desc.kind == BufferKind::Device && importer.takes(size));
         let mut external = vk::ExternalMemoryBufferCreateInfo::default().handle_types(host_memory::HANDLE_TYPE);
-        let mut info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(sharing).queue_family_indices(families);
+        let mut info = vk::BufferCreateInfo::default()
+            .size(size)
+            .usage(buffer_usage(self.shared.has_ray_query))
+            .sharing_mode(sharing)
+            .queue_family_indices(families);
         if importer.is_some() {
             info = info.push_next(&mut external);
         }
@@ -338,7 +342,7 @@ impl Context {
         let mut requirements = unsafe { device.get_buffer_memory_requirements(raw) };
         requirements.alignment = requirements.alignment.max(gridwalk::REGION_ALIGNMENT);
         let memory = match importer {
-            Some(importer) => Memory::OfHost(importer.allocate(device, &requirements, desc.name, out_of_memory)?),
+            Some(importer) => Memory::OfHost(importer.allocate(&requirements, desc.name, out_of_memory)?),
             None => {
                 let location = match desc.kind {
                     BufferKind::Device => MemoryLocation::GpuOnly,
@@ -364,8 +368,8 @@ impl Context {
         // SAFETY: the memory lives as long as the buffer and is bound to it alone at this offset.
         let bound = unsafe { device.bind_buffer_memory(raw, raw_memory, offset) };
         buffer.memory = Some(memory);
-        buffer.counted = size;
-        let now = self.shared.allocated.fetch_add(size, Ordering::Relaxed) + size;
+        buffer.counted = importer.and_then(|importer| importer.bytes_for(size)).unwrap_or(size);
+        let now = self.shared.allocated.fetch_add(buffer.counted, Ordering::Relaxed) + buffer.counted;
         self.shared.peak.fetch_max(now, Ordering::Relaxed);
         self.shared.made.fetch_add(1, Ordering::Relaxed);
         bound.map_err(Error::vulkan("vkBindBufferMemory"))?;

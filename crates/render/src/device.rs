@@ -218,6 +218,18 @@ pub(crate) struct Candidate {
     pub(crate) imports_host_memory: bool,
 }
 
+/// Usage of every buffer.
+pub(crate) fn buffer_usage(has_ray_query: bool) -> vk::BufferUsageFlags {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+        | vk::BufferUsageFlags::TRANSFER_SRC
+        | vk::BufferUsageFlags::TRANSFER_DST
+        | vk::BufferUsageFlags::INDIRECT_BUFFER
+        | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+    let structures =
+        vk::BufferUsageFlags::ACCELERATION_STRUCTURE_STORAGE_KHR | vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
+    if has_ray_query { usage | structures } else { usage }
+}
+
 /// What acceleration structures and ray queries of a device need to be enabled.
 pub(crate) const RAY_QUERY_EXTENSIONS: [&CStr; 3] =
     [khr::deferred_host_operations::NAME, khr::acceleration_structure::NAME, khr::ray_query::NAME];
@@ -388,7 +400,7 @@ impl Instance {
         let imports_host_memory = cfg!(target_os = "linux")
             && kind == DeviceKind::Cpu
             && has(ext::external_memory_host::NAME)
-            && self.can_import_host_memory(handle);
+            && self.can_import_host_memory(handle, has_ray_query);
         let mut extensions = Vec::new();
         if imports_host_memory {
             extensions.push(ext::external_memory_host::NAME);
@@ -450,19 +462,19 @@ impl Instance {
     }
 
     /// Whether storage buffers may lie in memory of the host that begins and ends with huge pages.
-    fn can_import_host_memory(&self, handle: vk::PhysicalDevice) -> bool {
+    fn can_import_host_memory(&self, handle: vk::PhysicalDevice, has_ray_query: bool) -> bool {
         let mut limits = vk::PhysicalDeviceExternalMemoryHostPropertiesEXT::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut limits);
-        let info = vk::PhysicalDeviceExternalBufferInfo::default()
-            .usage(vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS)
-            .handle_type(host_memory::HANDLE_TYPE);
+        let info = vk::PhysicalDeviceExternalBufferInfo::default().usage(buffer_usage(has_ray_query)).handle_type(host_memory::HANDLE_TYPE);
         let mut buffers = vk::ExternalBufferProperties::default();
         // SAFETY: the handle comes from this instance; the device has the extension, so it knows struct and type.
         unsafe {
             self.raw.get_physical_device_properties2(handle, &mut properties);
             self.raw.get_physical_device_external_buffer_properties(handle, &info, &mut buffers);
         }
-        buffers.external_memory_properties.external_memory_features.contains(vk::ExternalMemoryFeatureFlags::IMPORTABLE)
+        let buffers = buffers.external_memory_properties;
+        buffers.external_memory_features.contains(vk::ExternalMemoryFeatureFlags::IMPORTABLE)
+            && buffers.compatible_handle_types.contains(host_memory::HANDLE_TYPE)
             && limits.min_imported_host_pointer_alignment <= host_memory::HUGE_PAGE
     }
 

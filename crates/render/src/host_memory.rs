@@ -7,6 +7,7 @@
 use crate::{Error, Result, device::Candidate};
 use ash::{ext, vk};
 use memmap2::{MmapMut, MmapRaw};
+use std::mem::ManuallyDrop;
 
 /// Bytes of a huge page, which the memory begins and ends with: those of x86-64, and of AArch64 with pages of 4 KiB.
 pub(crate) const HUGE_PAGE: u64 = 2 << 20;
@@ -19,15 +20,16 @@ const LEAST_BYTES: u64 = 2 * HUGE_PAGE;
 
 /// Imports memory of the host.
 pub(crate) struct Importer {
+    device: ash::Device,
     functions: ext::external_memory_host::Device,
     types: vk::PhysicalDeviceMemoryProperties,
 }
 
-/// Imported memory, unmapped and freed by [`HostMemory::free`].
+/// Imported memory. Nothing but [`HostMemory::free`] frees and unmaps it: the device may be using it.
 pub(crate) struct HostMemory {
     raw: vk::DeviceMemory,
     properties: vk::MemoryPropertyFlags,
-    pages: MmapRaw,
+    pages: ManuallyDrop<MmapRaw>,
     begin: usize,
 }
 
@@ -35,21 +37,21 @@ impl Importer {
     /// `None` where the device cannot import memory of the host, or would gain nothing by it.
     pub(crate) fn new(instance: &ash::Instance, device: &ash::Device, candidate: &Candidate) -> Option<Importer> {
         candidate.imports_host_memory.then(|| Importer {
+            device: device.clone(),
             functions: ext::external_memory_host::Device::new(instance, device),
             // SAFETY: the handle comes from this instance.
             types: unsafe { instance.get_physical_device_memory_properties(candidate.handle) },
         })
     }
 
-    /// Whether a buffer of this size is to lie in such memory.
-    pub(crate) fn takes(&self, size: u64) -> bool {
-        size >= LEAST_BYTES
+    /// Bytes that a buffer of this size would take, if it is to lie in such memory.
+    pub(crate) fn bytes_for(&self, size: u64) -> Option<u64> {
+        if size < LEAST_BYTES { None } else { size.checked_next_multiple_of(HUGE_PAGE) }
     }
 
     /// Memory for a buffer of [`HANDLE_TYPE`]; `out_of_memory` tells that there is not enough.
     pub(crate) fn allocate(
         &self,
-        device: &ash::Device,
         requirements: &vk::MemoryRequirements,
         name: &str,
         out_of_memory: impl Fn() -> Error,
@@ -68,7 +70,7 @@ impl Importer {
         let mut admitted = vk::MemoryHostPointerPropertiesEXT::default();
         let properties_of = self.functions.fp().get_memory_host_pointer_properties_ext;
         // SAFETY: the extension is enabled on this device, and the pointer begins `size` bytes of a mapping of ours.
-        unsafe { properties_of(device.handle(), HANDLE_TYPE, pointer.cast(), &mut admitted) }
+        unsafe { properties_of(self.device.handle(), HANDLE_TYPE, pointer.cast(), &mut admitted) }
             .result()
             .map_err(Error::vulkan("vkGetMemoryHostPointerPropertiesEXT"))?;
         let bits = admitted.memory_type_bits & requirements.memory_type_bits;
@@ -86,13 +88,13 @@ impl Importer {
             .memory_type_index(memory_type)
             .push_next(&mut import)
             .push_next(&mut flags);
-        // SAFETY: pointer and size are multiples of a huge page, which is one of the alignment that the device asks for; the memory is mapped
-        // until after the import is freed.
-        let raw = unsafe { device.allocate_memory(&info, None) }.map_err(|result| match result {
+        // SAFETY: pointer and size are multiples of a huge page, and so of the alignment that the device asks for; the memory is mapped until
+        // after the import is freed.
+        let raw = unsafe { self.device.allocate_memory(&info, None) }.map_err(|result| match result {
             vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | vk::Result::ERROR_OUT_OF_HOST_MEMORY => out_of_memory(),
             result => Error::vulkan("vkAllocateMemory")(result),
         })?;
-        Ok(HostMemory { raw, properties, pages, begin })
+        Ok(HostMemory { raw, properties, pages: ManuallyDrop::new(pages), begin })
     }
 }
 
@@ -119,5 +121,6 @@ impl HostMemory {
     pub(crate) unsafe fn free(self, device: &ash::Device) {
         // SAFETY: the caller's contract.
         unsafe { device.free_memory(self.raw, None) };
+        drop(ManuallyDrop::into_inner(self.pages));
     }
 }

@@ -239,12 +239,6 @@ fn every_step_of_a_build_whose_leaf_cells_are_sorted_is_the_players() {
                     if kernel == "leaf_sort" {
                         made = memory.cells[..cells.len()].iter().filter(|range| range[1] & CELL_SPLIT != 0).count();
                         is_sorted = memory.leaf_arguments.emit != [0; 4];
-                        eprintln!(
-                            "{made} {is_sorted} {overlap:?} {} {:?} {}",
-                            gpu.tracer.shape().leaf_run,
-                            memory.cells[..cells.len()].iter().map(|r| r[1]).collect::<Vec<_>>(),
-                            memory.report.leaf_pairs
-                        );
                     }
                 });
                 let what = format!("{overlap:?}, {} cells, {:?}", cells.len(), gpu.tracer.shape());
