@@ -92,8 +92,14 @@ pub fn load(spec: &str, folders: &[PathBuf], seed: u64) -> Result<Loaded> {
             let found = folders.iter().map(|folder| folder.join(file)).find(|path| path.is_file());
             let Some(path) = found else {
                 let searched: Vec<String> = folders.iter().map(|folder| folder.join(file).display().to_string()).collect();
+                // These have longer names there, which tell why they cannot be fetched.
+                let name = match spec {
+                    "elephant" => "elephant-gallop",
+                    "sponza" => "crytek-sponza",
+                    name => name,
+                };
                 bail!(
-                    "{spec}: not found ({}). Bring it with `cargo tool scenes get {spec}`, or name the folder above it in GRIDWALK_SCENES",
+                    "{spec}: not found ({}). Bring it with `cargo tool scenes get {name}`, or name the folder above it in GRIDWALK_SCENES",
                     searched.join(", ")
                 );
             };
