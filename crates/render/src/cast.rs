@@ -5,7 +5,7 @@ use crate::{
     pipeline::{Recorder, Timer},
 };
 use bytemuck::AnyBitPattern;
-use gridwalk::{Hit, Ray, RayCount, RaySortInfo, Region, TraceInfo};
+use gridwalk::{Hit, Ray, RayCount, RaySortInfo, Region, TraceInfo, Tracer};
 use std::time::Instant;
 
 /// Rays of one submission at most, so that it is short enough for a watchdog.
@@ -14,8 +14,39 @@ pub const RAYS_PER_SUBMISSION: u32 = 262_144;
 /// The same for a CPU, whose slowest driver traces ten thousand rays a second through a hard scene.
 const CPU_RAYS_PER_SUBMISSION: u32 = 65_536;
 
+/// How many rays the next submission traces: as many as keep it short.
+#[derive(Debug)]
+struct Pace {
+    rays: u32,
+    least: u32,
+    short_ms: f64,
+}
+
+impl Pace {
+    const MOST: u32 = 1 << 20;
+
+    /// What is so long that the next submission has half as many rays.
+    const LONG_MS: f64 = 1000.0;
+
+    fn new(context: &Context) -> Pace {
+        // Where rays take eight times as long, twice as many as took so long stay within a watchdog's two seconds. A CPU has none: there it is how
+        // long an interruption waits.
+        let short_ms = if context.is_cpu() { 250.0 } else { 125.0 };
+        Pace { rays: context.rays_per_submission(), least: context.rays_per_submission(), short_ms }
+    }
+
+    /// A submission of `count` rays has taken so long.
+    fn took(&mut self, count: u32, ms: f64) {
+        if count >= self.rays && ms < self.short_ms {
+            self.rays = self.rays.saturating_mul(2).min(Pace::MOST);
+        } else if ms > Pace::LONG_MS {
+            self.rays = (self.rays / 2).max(self.least);
+        }
+    }
+}
+
 impl Context {
-    /// Rays that one submission traces at most on this device.
+    /// Rays that one submission traces on this device, as long as nothing is known of the time that they take.
     pub fn rays_per_submission(&self) -> u32 {
         if self.is_cpu() { CPU_RAYS_PER_SUBMISSION } else { RAYS_PER_SUBMISSION }
     }
@@ -27,7 +58,9 @@ pub struct RayBatch {
     context: Context,
     rays: Buffer,
     answers: Buffer,
-    scratch: Option<Buffer>,
+    /// With room for how many rays.
+    scratch: Option<(Buffer, u32)>,
+    pace: Pace,
     /// Of rays that are sorted: the order of all, and the memory of the sort.
     sorting: Option<(Buffer, Option<Buffer>)>,
     count: u32,
@@ -61,6 +94,7 @@ impl RayBatch {
             rays: context.upload("rays", rays)?,
             answers,
             scratch: None,
+            pace: Pace::new(context),
             sorting: None,
             count,
             sort_ms: 0.0,
@@ -94,8 +128,8 @@ impl RayBatch {
         self.count == 0
     }
 
-    /// Finds the closest hit of every ray, in submissions of at most [`Context::rays_per_submission`]; returns the milliseconds that it took, by the
-    /// device's clock where it has one.
+    /// Finds the closest hit of every ray; returns the milliseconds that it took, by the device's clock where it has one. The first submission has
+    /// [`Context::rays_per_submission`] rays; as long as they are short, the next has twice as many, up to 2^20.
     ///
     /// # Errors
     /// [`crate::Error::OutOfDeviceMemory`]; those of [`Context::submit`].
@@ -129,14 +163,6 @@ impl RayBatch {
 
     fn trace(&mut self, grid: &Grid, query: Query) -> Result<f64> {
         let tracer = grid.tracer()?;
-        let most = self.context.rays_per_submission();
-        let scratch = match self.scratch.take() {
-            Some(scratch) => scratch,
-            None => {
-                let size = tracer.trace_scratch_size(self.count.min(most))?.size;
-                self.context.buffer(&BufferDesc { name: "trace scratch", size, kind: BufferKind::Device, dedicated: false })?
-            }
-        };
         let mut timer = Timer::new(&self.context)?;
         let begin = Instant::now();
         if let Some((order, scratch)) = &mut self.sorting {
@@ -161,7 +187,9 @@ impl RayBatch {
             Query::Any => 4,
         };
         while first < self.count {
-            let count = (self.count - first).min(most);
+            let wanted = (self.count - first).min(self.pace.rays);
+            let (scratch, room) = self.scratch_for(tracer, wanted)?;
+            let count = wanted.min(room);
             let part = |region: Region, size: u64| region.part(u64::from(first) * size, u64::from(count) * size);
             let (rays, hits, number) = (self.rays.region(), self.answers.region(), RayCount::Direct(count));
             // A part of the order is of rays from everywhere.
@@ -171,6 +199,7 @@ impl RayBatch {
                 }
                 None => TraceInfo::new(part(rays, size_of::<Ray>() as u64), part(hits, answer_size), number, scratch.region()),
             };
+            let submitted = Instant::now();
             self.context.submit("trace", |cmd| {
                 let mut recorder = Recorder::new(&self.context, cmd, &mut timer);
                 // SAFETY: the command buffer is recording on the tracer's device; the regions are parts of living buffers of that device
@@ -184,13 +213,31 @@ impl RayBatch {
                 Ok(())
             })?;
             timer.collect()?;
+            self.scratch = Some((scratch, room));
+            self.pace.took(count, submitted.elapsed().as_secs_f64() * 1e3);
             first += count;
         }
         let wall = begin.elapsed().as_secs_f64() * 1e3;
-        self.scratch = Some(scratch);
         let steps = timer.take();
         self.sort_ms = steps.iter().filter(|step| step.name == "sort").map(|step| step.ms).sum();
         Ok(if self.context.has_timestamps() { steps.iter().map(|step| step.ms).sum() } else { wall })
+    }
+}
+
+impl RayBatch {
+    /// Scratch for so many rays, or for fewer if there was some and there is no memory for more.
+    fn scratch_for(&mut self, tracer: &Tracer, count: u32) -> Result<(Buffer, u32)> {
+        let before = match self.scratch.take() {
+            Some((scratch, room)) if room >= count => return Ok((scratch, room)),
+            before => before,
+        };
+        let size = tracer.trace_scratch_size(count)?.size;
+        let made = self.context.buffer(&BufferDesc { name: "trace scratch", size, kind: BufferKind::Device, dedicated: false });
+        match (made, before) {
+            (Ok(scratch), _) => Ok((scratch, count)),
+            (Err(Error::OutOfDeviceMemory { .. }), Some(before)) => Ok(before),
+            (Err(error), _) => Err(error),
+        }
     }
 }
 
@@ -297,4 +344,31 @@ pub fn cast(grid: &Grid, rays: &[Ray]) -> Result<Vec<Hit>> {
 /// As [`cast`].
 pub fn occluded(grid: &Grid, rays: &[Ray]) -> Result<Vec<u32>> {
     trace_in_lanes(grid, rays, Query::Any)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pace;
+
+    #[test]
+    fn submissions_grow_while_they_are_short() {
+        let mut pace = Pace { rays: 100_000, least: 100_000, short_ms: 250.0 };
+        pace.took(100_000, 249.0);
+        assert_eq!(pace.rays, 200_000);
+        // The rest of a batch says little.
+        pace.took(1, 0.0);
+        assert_eq!(pace.rays, 200_000);
+        pace.took(200_000, 250.0);
+        assert_eq!(pace.rays, 200_000);
+        for _ in 0..4 {
+            pace.took(pace.rays, 0.0);
+        }
+        assert_eq!(pace.rays, Pace::MOST);
+        pace.took(1, 1001.0);
+        assert_eq!(pace.rays, Pace::MOST / 2);
+        for _ in 0..4 {
+            pace.took(pace.rays, 5000.0);
+        }
+        assert_eq!(pace.rays, 100_000);
+    }
 }
