@@ -192,9 +192,9 @@ void main() {
 
     uvec3 bricks_along = brick_resolution(resolution);
     uint brick_count = bricks_along.x * bricks_along.y * bricks_along.z;
-    arguments.arguments.brick_reduce = uvec4(split_workgroups((brick_count + BRICK_TILE - 1u) / BRICK_TILE, 1u), 0u);
+    arguments.arguments.brick_reduce = uvec4(deal_workgroups((brick_count + BRICK_TILE - 1u) / BRICK_TILE, 1u), 0u);
     arguments.arguments.bricks = uvec4(split_workgroups(brick_count, MAP_SIZE), 0u);
-    arguments.arguments.clear_cells = uvec4(split_workgroups(BRICK_SIZE * brick_count, MAP_SIZE), 0u);
+    arguments.arguments.clear_cells = uvec4(deal_workgroups(BRICK_SIZE * brick_count, MAP_SIZE), 0u);
 
     report.report.triangles = triangle_count;
     report.report.dropped = bounds.dropped;

@@ -34,7 +34,7 @@ void main() {
     report.report.pair_total = total;
     report.report.overflow = overflow;
 
-    uvec3 runs = split_workgroups((count + PAIRS_EACH - 1u) / PAIRS_EACH, MAP_SIZE);
+    uvec3 runs = deal_workgroups((count + PAIRS_EACH - 1u) / PAIRS_EACH, MAP_SIZE);
     arguments.arguments.emit_large = state.state.has_large != 0u ? uvec4(runs, 0u) : uvec4(0u);
     arguments.arguments.cell_ranges = range_groups(count);
     for (uint pass = 0u; pass < pass_capacity; ++pass) {

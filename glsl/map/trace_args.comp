@@ -19,7 +19,7 @@ layout(push_constant, std430) uniform TraceArgs {
 
 void main() {
     uint rays = traced_rays(count, max_rays, indirect);
-    state.state.arguments = uvec4(split_workgroups(rays, MAP_SIZE), 0u);
+    state.state.arguments = uvec4(deal_workgroups(rays, MAP_SIZE), 0u);
     state.state.ray_count = rays;
     state.state.unfinished = 0u;
 }

@@ -14,6 +14,6 @@ layout(push_constant, std430) uniform TraceContinueArgs { TraceStateInOut state;
 
 void main() {
     uint rays = state.state.unfinished != 0u ? state.state.ray_count : 0u;
-    state.state.arguments = uvec4(split_workgroups(rays, MAP_SIZE), 0u);
+    state.state.arguments = uvec4(deal_workgroups(rays, MAP_SIZE), 0u);
     state.state.unfinished = 0u;
 }

@@ -11,7 +11,7 @@ layout(constant_id = 5) const uint RANGE_PAIRS = 1; // pairs an invocation of ce
 layout(constant_id = 6) const uint TABLE_ROWS = 1; // rows of the digit table a workgroup of table_scan
 
 // Of sort_histogram and sort_scatter.
-uvec4 sort_groups(uint pairs) { return pairs > 0u ? uvec4(split_workgroups((pairs + SORT_TILE - 1u) / SORT_TILE, SORT_TILES), 0u) : uvec4(0u); }
+uvec4 sort_groups(uint pairs) { return pairs > 0u ? uvec4(deal_workgroups((pairs + SORT_TILE - 1u) / SORT_TILE, SORT_TILES), 0u) : uvec4(0u); }
 
 // Of table_scan; none without a pair.
 uvec4 table_groups(uint pairs, uint digit_bits) {
@@ -19,6 +19,6 @@ uvec4 table_groups(uint pairs, uint digit_bits) {
 }
 
 // Of cell_ranges.
-uvec4 range_groups(uint pairs) { return uvec4(split_workgroups((pairs + RANGE_PAIRS - 1u) / RANGE_PAIRS, MAP_SIZE), 0u); }
+uvec4 range_groups(uint pairs) { return uvec4(deal_workgroups((pairs + RANGE_PAIRS - 1u) / RANGE_PAIRS, MAP_SIZE), 0u); }
 
 #endif

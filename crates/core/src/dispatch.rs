@@ -10,7 +10,21 @@ pub const fn split_workgroups(count: u32, size: u32) -> [u32; 3] {
     if groups <= MAX_GROUPS_X { [groups, 1, 1] } else { [MAX_GROUPS_X, groups.div_ceil(MAX_GROUPS_X), 1] }
 }
 
+/// Blocks of workgroups that each strand is dealt, at least where there are as many.
+pub const ROUNDS: u32 = 64;
+
+/// The same for elements that cost unlike: blocks of workgroups along x, dealt in rounds along y to strands along z. With a single strand it is
+/// as above.
+pub fn deal_workgroups(count: u32, size: u32, strands: u32) -> [u32; 3] {
+    if strands == 1 {
+        return split_workgroups(count, size);
+    }
+    let groups = count.div_ceil(size);
+    let rounds = (groups / strands).clamp(1, ROUNDS).max(groups.div_ceil(MAX_GROUPS_X * strands));
+    [groups.div_ceil(rounds * strands), rounds, strands]
+}
+
 /// Indices of the workgroups of a dispatch, those beyond the last element included.
 pub fn workgroups(groups: [u32; 3]) -> std::ops::Range<u32> {
-    0..groups[0] * groups[1]
+    0..groups[0] * groups[1] * groups[2]
 }

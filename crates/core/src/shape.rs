@@ -1,5 +1,6 @@
 //! How kernels are cut into workgroups: specialization constants, chosen by the kind of device.
 
+use crate::dispatch::deal_workgroups;
 use crate::kernel::Kernel;
 
 /// Workgroup sizes and elements an invocation. Two kinds of devices want the opposite: a CPU few invocations with long runs, a GPU many
@@ -35,7 +36,13 @@ pub struct Shape {
     pub leaf_run: u32,
     /// Whether rays load a row of a triangle as two coordinates and one, not as a vector.
     pub by_two: bool,
+    /// Runs of workgroups of a launch, at most 1,024, to which elements that cost unlike are dealt: one for each thread of a driver that gives its
+    /// threads one run of consecutive workgroups each, so that all end together.
+    pub strands: u32,
 }
+
+/// Most strands of a launch: fewer workgroups along z than every device takes.
+const MOST_STRANDS: u32 = 1024;
 
 impl Shape {
     /// For devices whose invocations run on CPU cores, in vectors of 4 to 16 lanes.
@@ -53,6 +60,7 @@ impl Shape {
         range_pairs: 16,
         leaf_run: 6000,
         by_two: true,
+        strands: 2,
     };
 
     /// For GPUs.
@@ -70,7 +78,17 @@ impl Shape {
         range_pairs: 1,
         leaf_run: 0,
         by_two: false,
+        strands: 1,
     };
+
+    /// What suits a device of this kind: [`Shape::GPU`], or [`Shape::CPU`] with a strand for each processor of this machine.
+    pub fn of_device(is_cpu: bool) -> Shape {
+        if !is_cpu {
+            return Shape::GPU;
+        }
+        let threads = std::thread::available_parallelism().map_or(Shape::CPU.strands, |threads| threads.get() as u32);
+        Shape { strands: threads.min(MOST_STRANDS), ..Shape::CPU }
+    }
 
     /// Whether the fields keep to what is said of them: kernels cut otherwise would not fit into shared memory, or give wrong results.
     pub fn is_valid(&self) -> bool {
@@ -82,6 +100,7 @@ impl Shape {
             (self.sort_keys, if self.sort_alone { 16_384 } else { 8_192 }),
             (self.emit_pairs, 700),
             (self.range_pairs, 32_767),
+            (self.strands, MOST_STRANDS),
         ];
         let digits = |bits: u32| 1_u32 << bits;
         sizes.iter().all(|size| (1..=256).contains(size))
@@ -93,6 +112,11 @@ impl Shape {
             && if self.sort_alone { digits(self.sort_bits) + self.sort_keys <= 16_384 } else { digits(self.sort_bits) * self.sort_size <= 8192 }
             // The digit table of 2^28 pairs stays below 2^31 entries.
             && digits(self.sort_bits) <= 8 * self.sort_tile()
+    }
+
+    /// Workgroups for `count` elements that cost unlike, `size` a workgroup: see [`deal_workgroups`].
+    pub fn deal_workgroups(&self, count: u32, size: u32) -> [u32; 3] {
+        deal_workgroups(count, size, self.strands)
     }
 
     /// Elements a workgroup of the scan.
@@ -199,6 +223,7 @@ impl Shape {
             "SORT_SIZE" => self.sort_size,
             "LEAF_RUN" => self.leaf_run,
             "BY_TWO" => self.by_two.into(),
+            "STRANDS" => self.strands,
             _ => return None,
         })
     }
@@ -239,6 +264,8 @@ mod tests {
             Shape { range_pairs: 32_768, ..cpu },
             Shape { range_pairs: 0, ..gpu },
             Shape { leaf_run: 16_001, ..cpu },
+            Shape { strands: 0, ..gpu },
+            Shape { strands: 1_025, ..cpu },
             Shape { sort_bits: 3, ..gpu },
             Shape { sort_bits: 32, ..gpu },
             Shape { sort_bits: 6, ..gpu },

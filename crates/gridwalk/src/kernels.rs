@@ -41,7 +41,15 @@ pub static ANY_HIT: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
+    spec_constants: &[
+        (1, "CONTINUE", 0),
+        (2, "LAST", 0),
+        (3, "RESUME", 0),
+        (4, "COUNT", 0),
+        (5, "EXTRAS", 0),
+        (6, "BY_TWO", 0),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `brick_distance_x`, from `glsl/map/brick_distance_x.comp`.
@@ -53,7 +61,7 @@ pub static BRICK_DISTANCE_X: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("grid", Access::Read), ("bricks", Access::Read), ("distances", Access::Write)],
-    spec_constants: &[(1, "DISTANCE_RUN", 4)],
+    spec_constants: &[(1, "DISTANCE_RUN", 4), (20, "STRANDS", 1)],
 };
 
 /// Kernel `brick_distance_y`, from `glsl/map/brick_distance_y.comp`.
@@ -65,7 +73,7 @@ pub static BRICK_DISTANCE_Y: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("grid", Access::Read), ("distances_x", Access::Read), ("distances", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `brick_distance_z`, from `glsl/map/brick_distance_z.comp`.
@@ -77,7 +85,7 @@ pub static BRICK_DISTANCE_Z: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("grid", Access::Read), ("distances_y", Access::Read), ("bricks", Access::ReadWrite)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `brick_reduce`, from `glsl/cooperative/brick_reduce.comp`.
@@ -95,7 +103,7 @@ pub static BRICK_REDUCE: Kernel = Kernel {
         ("bricks", Access::Write),
         ("partials", Access::Write),
     ],
-    spec_constants: &[(1, "BRICKS_EACH", 4)],
+    spec_constants: &[(1, "BRICKS_EACH", 4), (20, "STRANDS", 1)],
 };
 
 /// Kernel `brute_force`, from `glsl/map/brute_force.comp`.
@@ -107,7 +115,7 @@ pub static BRUTE_FORCE: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 48,
     accesses: &[("grid", Access::Read), ("rays", Access::Read), ("hits", Access::Write), ("walks", Access::ReadWrite)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `cell_ranges`, from `glsl/map/cell_ranges.comp`.
@@ -119,7 +127,7 @@ pub static CELL_RANGES: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 32,
     accesses: &[("state", Access::Read), ("keys", Access::Read), ("cells", Access::Write), ("report", Access::Write)],
-    spec_constants: &[(1, "RANGE_PAIRS", 1)],
+    spec_constants: &[(1, "RANGE_PAIRS", 1), (20, "STRANDS", 1)],
 };
 
 /// Kernel `clear_bricks`, from `glsl/map/clear_bricks.comp`.
@@ -131,7 +139,7 @@ pub static CLEAR_BRICKS: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 16,
     accesses: &[("grid", Access::Read), ("used", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `clear_cells`, from `glsl/map/clear_cells.comp`.
@@ -143,7 +151,7 @@ pub static CLEAR_CELLS: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("grid", Access::Read), ("used", Access::Read), ("cells", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `closest_candidate`, from `glsl/map/closest_candidate.comp`.
@@ -155,7 +163,7 @@ pub static CLOSEST_CANDIDATE: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("grid", Access::Read), ("rays", Access::Read), ("hits", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `closest_hit`, from `glsl/map/closest_hit.comp`.
@@ -177,7 +185,15 @@ pub static CLOSEST_HIT: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
+    spec_constants: &[
+        (1, "CONTINUE", 0),
+        (2, "LAST", 0),
+        (3, "RESUME", 0),
+        (4, "COUNT", 0),
+        (5, "EXTRAS", 0),
+        (6, "BY_TWO", 0),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `configure`, from `glsl/cooperative/configure.comp`.
@@ -199,7 +215,7 @@ pub static CONFIGURE: Kernel = Kernel {
         ("triangles", Access::Read),
         ("bricks", Access::Read),
     ],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "BRICK_TILE", 1024), (4, "BOUNDS_TILE", 2048)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "BRICK_TILE", 1024), (4, "BOUNDS_TILE", 2048), (20, "STRANDS", 1)],
 };
 
 /// Kernel `count_hits`, from `glsl/map/count_hits.comp`.
@@ -219,7 +235,15 @@ pub static COUNT_HITS: Kernel = Kernel {
         ("masks", Access::Read),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
+    spec_constants: &[
+        (1, "CONTINUE", 0),
+        (2, "LAST", 0),
+        (3, "RESUME", 0),
+        (4, "COUNT", 0),
+        (5, "EXTRAS", 0),
+        (6, "BY_TWO", 0),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `gather`, from `glsl/cooperative/gather.comp`.
@@ -237,7 +261,7 @@ pub static GATHER: Kernel = Kernel {
         ("state", Access::Write),
         ("partials", Access::Write),
     ],
-    spec_constants: &[(1, "TRIANGLES_EACH", 8)],
+    spec_constants: &[(1, "TRIANGLES_EACH", 8), (20, "STRANDS", 1)],
 };
 
 /// Kernel `gather_records`, from `glsl/cooperative/gather_records.comp`.
@@ -255,7 +279,7 @@ pub static GATHER_RECORDS: Kernel = Kernel {
         ("triangles", Access::Write),
         ("partials", Access::Write),
     ],
-    spec_constants: &[(1, "TRIANGLES_EACH", 8)],
+    spec_constants: &[(1, "TRIANGLES_EACH", 8), (20, "STRANDS", 1)],
 };
 
 /// Kernel `geometry_scan`, from `glsl/cooperative/geometry_scan.comp`.
@@ -267,7 +291,7 @@ pub static GEOMETRY_SCAN: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("records", Access::Read), ("firsts", Access::Write), ("state", Access::Write), ("arguments", Access::Write)],
-    spec_constants: &[(1, "ITEMS_EACH", 16), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "BOUNDS_TILE", 2048)],
+    spec_constants: &[(1, "ITEMS_EACH", 16), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "BOUNDS_TILE", 2048), (20, "STRANDS", 1)],
 };
 
 /// Kernel `leaf_args`, from `glsl/cooperative/leaf_args.comp`.
@@ -295,6 +319,7 @@ pub static LEAF_ARGS: Kernel = Kernel {
         (7, "SPLIT_CELLS_EACH", 1),
         (8, "SORT_SIZE", 8),
         (9, "LEAF_RUN", 0),
+        (20, "STRANDS", 1),
     ],
 };
 
@@ -318,7 +343,7 @@ pub static LEAF_COUNT: Kernel = Kernel {
         ("owners", Access::Read),
         ("cells", Access::Write),
     ],
-    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5)],
+    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5), (20, "STRANDS", 1)],
 };
 
 /// Kernel `leaf_distance`, from `glsl/cooperative/leaf_distance.comp`.
@@ -330,7 +355,7 @@ pub static LEAF_DISTANCE: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 24,
     accesses: &[("state", Access::Read), ("split_cells", Access::Read), ("cells", Access::ReadWrite)],
-    spec_constants: &[(1, "SPLIT_CELLS_EACH", 1)],
+    spec_constants: &[(1, "SPLIT_CELLS_EACH", 1), (20, "STRANDS", 1)],
 };
 
 /// Kernel `leaf_emit`, from `glsl/map/leaf_emit.comp`.
@@ -357,7 +382,7 @@ pub static LEAF_EMIT: Kernel = Kernel {
         ("values_b", Access::Write),
         ("cells", Access::Write),
     ],
-    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5)],
+    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5), (20, "STRANDS", 1)],
 };
 
 /// Kernel `leaf_emit_large`, from `glsl/map/leaf_emit_large.comp`.
@@ -379,7 +404,7 @@ pub static LEAF_EMIT_LARGE: Kernel = Kernel {
         ("owners", Access::Read),
         ("keys", Access::Write),
     ],
-    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5)],
+    spec_constants: &[(1, "EXACT", 0), (2, "OWNER_SHIFT", 5), (20, "STRANDS", 1)],
 };
 
 /// Kernel `leaf_sort`, from `glsl/map/leaf_sort.comp`.
@@ -407,6 +432,7 @@ pub static LEAF_SORT: Kernel = Kernel {
         (4, "SORT_TILES", 1),
         (5, "RANGE_PAIRS", 1),
         (6, "TABLE_ROWS", 1),
+        (20, "STRANDS", 1),
     ],
 };
 
@@ -428,7 +454,15 @@ pub static NEAREST_HITS: Kernel = Kernel {
         ("geometries", Access::Write),
         ("order", Access::Read),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
+    spec_constants: &[
+        (1, "CONTINUE", 0),
+        (2, "LAST", 0),
+        (3, "RESUME", 0),
+        (4, "COUNT", 0),
+        (5, "EXTRAS", 0),
+        (6, "BY_TWO", 0),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `overlap_count`, from `glsl/map/overlap_count.comp`.
@@ -447,7 +481,7 @@ pub static OVERLAP_COUNT: Kernel = Kernel {
         ("boxes", Access::Write),
         ("used", Access::Write),
     ],
-    spec_constants: &[(1, "EXACT", 0)],
+    spec_constants: &[(1, "EXACT", 0), (20, "STRANDS", 1)],
 };
 
 /// Kernel `overlap_emit`, from `glsl/map/overlap_emit.comp`.
@@ -468,7 +502,7 @@ pub static OVERLAP_EMIT: Kernel = Kernel {
         ("values_a", Access::Write),
         ("values_b", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `overlap_emit_large`, from `glsl/map/overlap_emit_large.comp`.
@@ -490,7 +524,7 @@ pub static OVERLAP_EMIT_LARGE: Kernel = Kernel {
         ("values_b", Access::Write),
         ("used", Access::Write),
     ],
-    spec_constants: &[(1, "PAIRS_EACH", 16), (2, "EXACT", 0)],
+    spec_constants: &[(1, "PAIRS_EACH", 16), (2, "EXACT", 0), (20, "STRANDS", 1)],
 };
 
 /// Kernel `pair_args`, from `glsl/cooperative/pair_args.comp`.
@@ -516,6 +550,7 @@ pub static PAIR_ARGS: Kernel = Kernel {
         (5, "RANGE_PAIRS", 1),
         (6, "TABLE_ROWS", 1),
         (7, "PAIRS_EACH", 16),
+        (20, "STRANDS", 1),
     ],
 };
 
@@ -534,7 +569,7 @@ pub static RAY_KEYS: Kernel = Kernel {
         ("keys", Access::Write),
         ("values", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `ray_sort_args`, from `glsl/map/ray_sort_args.comp`.
@@ -546,7 +581,14 @@ pub static RAY_SORT_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 32,
     accesses: &[("state", Access::Write), ("arguments", Access::Write), ("count", Access::Read)],
-    spec_constants: &[(1, "MAP_SIZE", 64), (2, "SORT_BITS", 10), (3, "SORT_TILE", 8192), (4, "TABLE_ROWS", 1), (5, "SORT_TILES", 1)],
+    spec_constants: &[
+        (1, "MAP_SIZE", 64),
+        (2, "SORT_BITS", 10),
+        (3, "SORT_TILE", 8192),
+        (4, "TABLE_ROWS", 1),
+        (5, "SORT_TILES", 1),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `report_spine`, from `glsl/cooperative/report_spine.comp`.
@@ -565,7 +607,7 @@ pub static REPORT_SPINE: Kernel = Kernel {
         ("arguments", Access::Write),
         ("report", Access::Write),
     ],
-    spec_constants: &[(1, "BRICK_TILE", 1024), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "SORT_BITS", 10)],
+    spec_constants: &[(1, "BRICK_TILE", 1024), (2, "MAP_SIZE", 64), (3, "SCAN_TILE", 4096), (4, "SORT_BITS", 10), (20, "STRANDS", 1)],
 };
 
 /// Kernel `scan_reduce`, from `glsl/cooperative/scan_reduce.comp`.
@@ -577,7 +619,7 @@ pub static SCAN_REDUCE: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("state", Access::Read), ("values", Access::Read), ("partials", Access::Write)],
-    spec_constants: &[(1, "ITEMS_EACH", 16)],
+    spec_constants: &[(1, "ITEMS_EACH", 16), (20, "STRANDS", 1)],
 };
 
 /// Kernel `sort_histogram`, from `glsl/cooperative/sort_histogram.comp`.
@@ -589,7 +631,7 @@ pub static SORT_HISTOGRAM: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::Read), ("keys_a", Access::Read), ("keys_b", Access::Read), ("table", Access::Write)],
-    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0)],
+    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0), (20, "STRANDS", 1)],
 };
 
 /// Kernel `sort_scatter`, from `glsl/cooperative/sort_scatter.comp`.
@@ -610,7 +652,7 @@ pub static SORT_SCATTER: Kernel = Kernel {
         ("sums", Access::Read),
         ("kept", Access::Write),
     ],
-    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0)],
+    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0), (20, "STRANDS", 1)],
 };
 
 /// Kernel `split_cells`, from `glsl/cooperative/split_cells.comp`.
@@ -630,7 +672,7 @@ pub static SPLIT_CELLS: Kernel = Kernel {
         ("split_cells", Access::Write),
         ("owners", Access::Write),
     ],
-    spec_constants: &[(1, "BRICKS_EACH", 4), (2, "OWNER_SHIFT", 5)],
+    spec_constants: &[(1, "BRICKS_EACH", 4), (2, "OWNER_SHIFT", 5), (20, "STRANDS", 1)],
 };
 
 /// Kernel `table_scan`, from `glsl/cooperative/table_scan.comp`.
@@ -642,7 +684,7 @@ pub static TABLE_SCAN: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 32,
     accesses: &[("state", Access::Read), ("table", Access::ReadWrite), ("sums", Access::Write)],
-    spec_constants: &[(1, "SORT_TILE", 8192), (2, "SORT_ALONE", 0)],
+    spec_constants: &[(1, "SORT_TILE", 8192), (2, "SORT_ALONE", 0), (20, "STRANDS", 1)],
 };
 
 /// Kernel `trace_args`, from `glsl/map/trace_args.comp`.
@@ -654,7 +696,7 @@ pub static TRACE_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 24,
     accesses: &[("state", Access::Write), ("count", Access::Read)],
-    spec_constants: &[(1, "MAP_SIZE", 64)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (20, "STRANDS", 1)],
 };
 
 /// Kernel `trace_continue_args`, from `glsl/map/trace_continue_args.comp`.
@@ -666,7 +708,7 @@ pub static TRACE_CONTINUE_ARGS: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 8,
     accesses: &[("state", Access::ReadWrite)],
-    spec_constants: &[(1, "MAP_SIZE", 64)],
+    spec_constants: &[(1, "MAP_SIZE", 64), (20, "STRANDS", 1)],
 };
 
 /// Every kernel of this crate, in order of name.

@@ -12,12 +12,12 @@ use crate::error::{Error, Result};
 use crate::kernels::*;
 use crate::plan::{self, Buffer, BuildInputs, Dispatch, Extras, Item, MAX_PUSH, Query, RayInputs, Source, Step};
 use crate::requirements;
-use crate::shape::Shape;
 use crate::sizes::{
     self, BuildSizes, Capacity, GridLayout, MAX_RAYS, MAX_VERTICES, REGION_ALIGNMENT, REPORT_SIZE, RaySortLayout, RegionSize,
     ScratchLayout, TraceLayout,
 };
 use crate::sync::{Access, SHADER, cmd_barrier};
+use gridwalk_core::shape::Shape;
 
 /// The device that a [`Tracer`] records for.
 pub struct DeviceDesc<'a> {
@@ -352,7 +352,7 @@ impl Tracer {
         if !found.missing.is_empty() {
             return Err(Error::Unsuitable { missing: found.missing });
         }
-        let shape = desc.shape.unwrap_or(if found.is_cpu { Shape::CPU } else { Shape::GPU });
+        let shape = desc.shape.unwrap_or_else(|| Shape::of_device(found.is_cpu));
         if !shape.is_valid() {
             return Err(Error::Option { option: "shape", value: format!("{shape:?}"), expected: "sizes within the bounds of its fields" });
         }

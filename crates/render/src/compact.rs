@@ -135,7 +135,7 @@ mod tests {
                         "size {size}, case {case}: first at {:?}",
                         offsets.iter().zip(&expected).position(|(a, b)| a != b)
                     );
-                    let [x, y, z] = crate::pipeline::map_groups(total);
+                    let [x, y, z] = crate::pipeline::queue_groups(&context, total);
                     assert_eq!(
                         [header.count, header.groups_x, header.groups_y, header.groups_z],
                         [total, x, y, z],

@@ -11,7 +11,7 @@ use gpu_allocator::{
     AllocationError, AllocationSizes, AllocatorDebugSettings, MemoryLocation,
     vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc},
 };
-use gridwalk::Region;
+use gridwalk::{Region, Shape};
 use std::{
     ffi::CString,
     fmt,
@@ -85,6 +85,7 @@ struct Shared {
     debug: Option<ext::debug_utils::Device>,
     candidate: Candidate,
     heap_budget: Budget,
+    shape: Shape,
     has_ray_query: bool,
     /// Bytes of all living buffers.
     allocated: AtomicU64,
@@ -190,6 +191,7 @@ impl Context {
             device,
             debug,
             heap_budget: Budget { heap: u32::try_from(heap).unwrap_or(0), limit: desc.memory_limit },
+            shape: Shape::of_device(candidate.info.kind == DeviceKind::Cpu),
             has_ray_query,
             allocated: AtomicU64::new(0),
             peak: AtomicU64::new(0),
@@ -214,6 +216,11 @@ impl Context {
     /// Whether the device is a CPU.
     pub fn is_cpu(&self) -> bool {
         self.device_info().kind == DeviceKind::Cpu
+    }
+
+    /// How kernels are cut into workgroups on this device.
+    pub(crate) fn shape(&self) -> &Shape {
+        &self.shared.shape
     }
 
     /// The logical device, for recording commands. It is closed with the context: do not keep it longer.

@@ -32,7 +32,7 @@ pub static CAMERA_RAYS: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("camera", Access::Read), ("rays", Access::Write), ("paths", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `first_hit`, from `glsl/render/map/first_hit.comp`.
@@ -50,7 +50,7 @@ pub static FIRST_HIT: Kernel = Kernel {
         ("hits", Access::Read),
         ("records", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `flag_downsweep`, from `glsl/render/cooperative/flag_downsweep.comp`.
@@ -62,7 +62,7 @@ pub static FLAG_DOWNSWEEP: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 32,
     accesses: &[("queue", Access::Read), ("flags", Access::Read), ("sums", Access::Read), ("offsets", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `flag_reduce`, from `glsl/render/cooperative/flag_reduce.comp`.
@@ -74,7 +74,7 @@ pub static FLAG_REDUCE: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 24,
     accesses: &[("queue", Access::Read), ("flags", Access::Read), ("sums", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `flag_spine`, from `glsl/render/cooperative/flag_spine.comp`.
@@ -86,7 +86,7 @@ pub static FLAG_SPINE: Kernel = Kernel {
     local_size_ids: [None, None, None],
     push_constant_size: 24,
     accesses: &[("queue", Access::Read), ("sums", Access::ReadWrite), ("next", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `interpolate`, from `glsl/render/map/interpolate.comp`.
@@ -108,7 +108,7 @@ pub static INTERPOLATE: Kernel = Kernel {
         ("normals", Access::Write),
         ("uvs", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `interpolate_colours`, from `glsl/render/map/interpolate_colours.comp`.
@@ -120,7 +120,7 @@ pub static INTERPOLATE_COLOURS: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("first_colours", Access::Read), ("second_colours", Access::Read), ("colours", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `light_add`, from `glsl/render/map/light_add.comp`.
@@ -138,7 +138,7 @@ pub static LIGHT_ADD: Kernel = Kernel {
         ("film", Access::ReadWrite),
         ("unfinished", Access::ReadWrite),
     ],
-    spec_constants: &[(1, "BLEND", 0)],
+    spec_constants: &[(1, "BLEND", 0), (20, "STRANDS", 1)],
 };
 
 /// Kernel `light_count`, from `glsl/render/map/light_count.comp`.
@@ -156,7 +156,7 @@ pub static LIGHT_COUNT: Kernel = Kernel {
         ("surfaces", Access::Read),
         ("shadows", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `light_emit`, from `glsl/render/map/light_emit.comp`.
@@ -178,7 +178,7 @@ pub static LIGHT_EMIT: Kernel = Kernel {
         ("shadow_rays", Access::Write),
         ("shadow_paths", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `light_pass`, from `glsl/render/map/light_pass.comp`.
@@ -197,7 +197,15 @@ pub static LIGHT_PASS: Kernel = Kernel {
         ("passed", Access::Write),
         ("walks", Access::ReadWrite),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
+    spec_constants: &[
+        (1, "CONTINUE", 0),
+        (2, "LAST", 0),
+        (3, "RESUME", 0),
+        (4, "COUNT", 0),
+        (5, "EXTRAS", 0),
+        (6, "BY_TWO", 0),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `masked_any_hit`, from `glsl/render/map/masked_any_hit.comp`.
@@ -216,7 +224,15 @@ pub static MASKED_ANY_HIT: Kernel = Kernel {
         ("occluded", Access::Write),
         ("walks", Access::ReadWrite),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
+    spec_constants: &[
+        (1, "CONTINUE", 0),
+        (2, "LAST", 0),
+        (3, "RESUME", 0),
+        (4, "COUNT", 0),
+        (5, "EXTRAS", 0),
+        (6, "BY_TWO", 0),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `masked_closest_hit`, from `glsl/render/map/masked_closest_hit.comp`.
@@ -235,7 +251,15 @@ pub static MASKED_CLOSEST_HIT: Kernel = Kernel {
         ("hits", Access::Write),
         ("walks", Access::ReadWrite),
     ],
-    spec_constants: &[(1, "CONTINUE", 0), (2, "LAST", 0), (3, "RESUME", 0), (4, "COUNT", 0), (5, "EXTRAS", 0), (6, "BY_TWO", 0)],
+    spec_constants: &[
+        (1, "CONTINUE", 0),
+        (2, "LAST", 0),
+        (3, "RESUME", 0),
+        (4, "COUNT", 0),
+        (5, "EXTRAS", 0),
+        (6, "BY_TWO", 0),
+        (20, "STRANDS", 1),
+    ],
 };
 
 /// Kernel `morph`, from `glsl/render/map/morph.comp`.
@@ -254,7 +278,7 @@ pub static MORPH: Kernel = Kernel {
         ("positions", Access::Write),
         ("normals", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `place`, from `glsl/render/map/place.comp`.
@@ -266,7 +290,7 @@ pub static PLACE: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 48,
     accesses: &[("mesh_indices", Access::Read), ("mesh_materials", Access::Read), ("indices", Access::Write), ("surrounds", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `reflect_emit`, from `glsl/render/map/reflect_emit.comp`.
@@ -287,7 +311,7 @@ pub static REFLECT_EMIT: Kernel = Kernel {
         ("next_rays", Access::Write),
         ("next_paths", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `shade`, from `glsl/render/map/shade.comp`.
@@ -311,7 +335,7 @@ pub static SHADE: Kernel = Kernel {
         ("ways", Access::ReadWrite),
         ("waiting", Access::Write),
     ],
-    spec_constants: &[(1, "BLEND", 0)],
+    spec_constants: &[(1, "BLEND", 0), (20, "STRANDS", 1)],
 };
 
 /// Kernel `skin`, from `glsl/render/map/skin.comp`.
@@ -330,7 +354,7 @@ pub static SKIN: Kernel = Kernel {
         ("positions", Access::Write),
         ("normals", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `ways_emit`, from `glsl/render/map/ways_emit.comp`.
@@ -353,7 +377,7 @@ pub static WAYS_EMIT: Kernel = Kernel {
         ("next_rays", Access::Write),
         ("next_paths", Access::Write),
     ],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Every kernel of this crate, in order of name.

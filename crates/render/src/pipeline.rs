@@ -17,16 +17,18 @@ pub(crate) struct Pipeline {
 }
 
 impl Pipeline {
-    /// Makes the pipeline of a kernel; `constants` are values of its specialization constants by name.
+    /// Makes the pipeline of a kernel; `constants` are values of its specialization constants by name, beside those of the device's shape.
     pub(crate) fn new(context: &Context, kernel: &'static Kernel, constants: &[(&str, u32)]) -> Result<Pipeline> {
         let device = context.device();
+        let shape = context.shape();
         // Owns what is made from here on.
         let mut pipeline = Pipeline { context: context.clone(), kernel, layout: vk::PipelineLayout::null(), raw: vk::Pipeline::null() };
         let ranges = [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(kernel.push_constant_size)];
         let mut entries = Vec::new();
         let mut data = Vec::new();
         for (index, &(id, name, default)) in kernel.spec_constants.iter().enumerate() {
-            let value = constants.iter().find(|constant| constant.0 == name).map_or(default, |constant| constant.1);
+            let given = constants.iter().find(|constant| constant.0 == name).map(|constant| constant.1);
+            let value = given.or_else(|| shape.constant(name)).unwrap_or(default);
             entries.push(vk::SpecializationMapEntry { constant_id: id, offset: index as u32 * 4, size: 4 });
             data.extend_from_slice(&value.to_ne_bytes());
         }
@@ -206,6 +208,11 @@ impl<'a> Recorder<'a> {
         // SAFETY: as in `dispatch`; the buffer has indirect usage and holds the command at an offset that is a multiple of 4.
         self.kernel(pipeline, push, |device, cmd| unsafe { device.cmd_dispatch_indirect(cmd, buffer, offset) });
     }
+}
+
+/// Workgroups of a map kernel over a queue of `count` rays, as `flag_spine` has them.
+pub(crate) fn queue_groups(context: &Context, count: u32) -> [u32; 3] {
+    context.shape().deal_workgroups(count, MAP_WORKGROUP)
 }
 
 /// Workgroups of a direct dispatch of a map kernel over `count` elements.

@@ -14,7 +14,7 @@ use crate::{
     kernels,
     layout::{CameraFrame, Film, FirstHitRecord, QueueHeader, WaitingRay, Ways},
     picture::Picture,
-    pipeline::{Pipeline, Recorder, Timer, map_groups},
+    pipeline::{Pipeline, Recorder, Timer, map_groups, queue_groups},
     push,
     queues::{QueueShape, Queues},
     scene::update_buffer,
@@ -84,8 +84,7 @@ const CONTINUATIONS: usize = gridwalk::plan::CONTINUATIONS as usize;
 
 impl Masked {
     fn new(context: &Context, kernel: &'static gridwalk::kernel::Kernel) -> Result<Masked> {
-        let by_two = u32::from(context.is_cpu());
-        let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last), ("BY_TWO", by_two)]);
+        let variant = |go_on, last| Pipeline::new(context, kernel, &[("CONTINUE", go_on), ("LAST", last)]);
         Ok(Masked { first: variant(0, 0)?, again: variant(1, 0)?, last: variant(1, 1)? })
     }
 
@@ -404,7 +403,7 @@ impl<'a> Batch<'a> {
         let here = |bounce: u32| (bounce % 2) as usize;
         match step {
             Step::Camera => {
-                let [groups_x, groups_y, groups_z] = map_groups(span.count);
+                let [groups_x, groups_y, groups_z] = queue_groups(&renderer.context, span.count);
                 let header = QueueHeader { count: span.count, groups_x, groups_y, groups_z };
                 recorder.step("start", "copy", |cmd| {
                     let device = renderer.context.device();

@@ -28,7 +28,7 @@ void main() {
         before += total;
     }
     if (gl_LocalInvocationID.x == 0u) {
-        uvec3 groups = split_workgroups(before, MAP_WORKGROUP);
+        uvec3 groups = deal_workgroups(before, MAP_WORKGROUP);
         next.header.count = before;
         next.header.groups_x = groups.x;
         next.header.groups_y = groups.y;

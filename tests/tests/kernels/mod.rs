@@ -5,6 +5,7 @@ mod bricks;
 mod cell_ranges;
 mod clear_cells;
 mod configure;
+mod dispatch;
 mod gather;
 mod largest;
 mod leaf_distance;
@@ -38,6 +39,7 @@ pub const ODD: Shape = Shape {
     range_pairs: 3,
     leaf_run: 100,
     by_two: false,
+    strands: 1,
 };
 
 /// So small that a few hundred thousand elements fill more than 65,535 workgroups. The scan's tiles are larger: each adds the sums of all
@@ -56,6 +58,7 @@ pub const TINY: Shape = Shape {
     range_pairs: 1,
     leaf_run: 0,
     by_two: true,
+    strands: 3,
 };
 
 /// All shapes under test.

@@ -30,7 +30,7 @@ fn check(gpu: &Gpu, total: u32, capacity: u32, passes: u32, has_large: u32) {
     assert_same(&format!("{what}: state"), &device_state.read::<BuildState>(0, 1), &[state]);
     assert_same(&format!("{what}: arguments"), &device_arguments.read::<DispatchArguments>(0, 1), &[arguments]);
     assert_same(&format!("{what}: report"), &device_report.read::<Report>(0, 1), &[report]);
-    let groups = u64::from(arguments.emit_large[0]) * u64::from(arguments.emit_large[1]);
+    let groups: u64 = arguments.emit_large[..3].iter().copied().map(u64::from).product();
     assert!(has_large == 0 || groups * u64::from(shape.map_size * shape.emit_pairs) >= u64::from(total.min(capacity)), "{what}");
 }
 

@@ -159,20 +159,21 @@ fn a_wrong_vertex_is_found_by_the_twin() {
 
 #[test]
 fn argument_kernels_agree_with_their_twins() {
-    let map_size = Gpu::shared().tracer.shape().map_size;
+    let shape = Gpu::shared().tracer.shape();
     for (count, max) in
         [(None, 0), (None, 1), (None, 65_535 * 64), (None, 65_535 * 64 + 1), (Some(0), 9), (Some(10), 9), (Some(u32::MAX), 1 << 28)]
     {
         let mut state = TraceState::default();
-        trace_args(&mut state, count, max, map_size);
+        trace_args(&mut state, count, max, &shape);
         let [x, y, z, _] = state.arguments;
+        let places = [x, y, z, shape.map_size].map(u64::from).iter().product::<u64>();
         let rays = count.map_or(max, |count| count.min(max));
-        assert_eq!((state.ray_count, z), (rays, 1));
-        assert!(x <= 65_535 && y <= 65_535 && u64::from(x) * u64::from(y) * u64::from(map_size) >= u64::from(rays));
-        trace_continue_args(&mut state, map_size);
+        assert_eq!((state.ray_count, z), (rays, shape.strands));
+        assert!(x <= 65_535 && y <= 65_535 && places >= u64::from(rays));
+        trace_continue_args(&mut state, &shape);
         assert_eq!(state.arguments[0], 0, "nothing was given up");
         state.unfinished = 1;
-        trace_continue_args(&mut state, map_size);
+        trace_continue_args(&mut state, &shape);
         assert_eq!((state.arguments, state.unfinished), ([x, y, z, 0], 0));
     }
 }

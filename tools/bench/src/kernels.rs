@@ -32,7 +32,7 @@ pub static COPY: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 24,
     accesses: &[("from", Access::Read), ("to", Access::Write)],
-    spec_constants: &[],
+    spec_constants: &[(20, "STRANDS", 1)],
 };
 
 /// Kernel `ray_query`, from `tools/bench/shaders/ray_query.comp`.
@@ -44,7 +44,7 @@ pub static RAY_QUERY: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("rays", Access::Read), ("hits", Access::Write)],
-    spec_constants: &[(1, "ANY", 0)],
+    spec_constants: &[(1, "ANY", 0), (20, "STRANDS", 1)],
 };
 
 /// Every kernel of this crate, in order of name.

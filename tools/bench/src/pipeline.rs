@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use bytemuck::{Pod, bytes_of};
+use gridwalk::Shape;
 use gridwalk::ash::vk;
 use gridwalk::kernel::Kernel;
 use gridwalk_render::Context;
@@ -58,7 +59,7 @@ impl Pipeline {
         let device = self.context.device();
         let bytes = bytes_of(push);
         let bytes = bytes.get(..self.kernel.push_constant_size as usize).unwrap_or(bytes);
-        let [x, y, z] = gridwalk::split_workgroups(count.div_ceil(self.kernel.local_size[0]));
+        let [x, y, z] = Shape::of_device(self.context.is_cpu()).deal_workgroups(count, self.kernel.local_size[0]);
         // SAFETY: the caller's word; the number of workgroups is within every device's limit.
         unsafe {
             device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, self.raw);

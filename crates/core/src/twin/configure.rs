@@ -191,9 +191,9 @@ pub fn configure_state(
     let (pass_count, digit_bits) = passes_of(key_bits, shape.sort_bits);
     *state = BuildState { key_bits, pass_count, digit_bits, sentinel, overflow, ..*state };
     let bricks: u32 = brick_resolution(header.resolution).iter().product();
-    arguments.brick_reduce = four(split_workgroups(bricks, shape.brick_tile()));
+    arguments.brick_reduce = four(shape.deal_workgroups(bricks, shape.brick_tile()));
     arguments.bricks = four(split_workgroups(bricks, shape.map_size));
-    arguments.clear_cells = four(split_workgroups(BRICK_SIZE * bricks, shape.map_size));
+    arguments.clear_cells = four(shape.deal_workgroups(BRICK_SIZE * bricks, shape.map_size));
     let empty = scene.dropped == info.triangle_count;
     *report = Report {
         triangles: info.triangle_count,

@@ -47,7 +47,7 @@ pub fn leaf_args(
 pub(super) fn write_sort(shape: &Shape, state: &BuildState, arguments: &mut LeafArguments, pass_capacity: u32) {
     let count = state.pair_count;
     arguments.emit = if count > 0 { arguments.count } else { [0; 4] };
-    arguments.cell_ranges = four(split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
+    arguments.cell_ranges = four(shape.deal_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
     for pass in 0..pass_capacity {
         let at = pass as usize;
         [arguments.sort[at], arguments.table_scan[at]] = pass_groups(shape, state, pass);

@@ -47,7 +47,7 @@ impl Leaves<'_> {
     }
 
     fn covered(&self, shape: &Shape, groups: [u32; 3]) -> std::ops::Range<u32> {
-        0..(groups[0] * groups[1] * shape.map_size).min(self.state.offset_count - 1)
+        0..(groups.iter().product::<u32>() * shape.map_size).min(self.state.offset_count - 1)
     }
 }
 

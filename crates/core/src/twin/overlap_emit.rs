@@ -37,7 +37,7 @@ impl Emission<'_> {
 
 /// Writes the pairs (cell id, triangle) of the triangles with small boxes.
 pub fn overlap_emit(shape: &Shape, groups: [u32; 3], emission: &mut Emission) {
-    let covered = (groups[0] * groups[1] * shape.map_size) as usize;
+    let covered = (groups.iter().product::<u32>() * shape.map_size) as usize;
     for triangle in 0..covered.min(emission.offsets.len() - 1) {
         let [mask, first, sizes] = emission.boxes[triangle];
         let [x, y] = [sizes & 0xFFFF, sizes >> 16];
@@ -53,7 +53,7 @@ pub fn overlap_emit(shape: &Shape, groups: [u32; 3], emission: &mut Emission) {
 /// Writes the pairs of the triangles with large boxes. The kernel hands an invocation a run of pairs and searches for its triangle; here
 /// each triangle writes its own, which must come to the same.
 pub fn overlap_emit_large(shape: &Shape, groups: [u32; 3], exact: bool, emission: &mut Emission) {
-    let covered = groups[0] * groups[1] * shape.map_size * shape.emit_pairs;
+    let covered = groups.iter().product::<u32>() * shape.map_size * shape.emit_pairs;
     let last = emission.pair_count.min(covered);
     for (triangle, ends) in emission.offsets.windows(2).enumerate().take_while(|(_, ends)| ends[0] < last) {
         if emission.boxes[triangle][0] != 0 || ends[0] == ends[1] {

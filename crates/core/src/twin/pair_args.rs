@@ -32,7 +32,7 @@ pub(super) fn pass_groups(shape: &Shape, state: &BuildState, pass: u32) -> [[u32
         return [[0; 4]; 2];
     }
     let tiles = state.pair_count.div_ceil(shape.sort_tile());
-    [split_workgroups(tiles, shape.sort_tiles()), split_workgroups(1 << state.digit_bits, shape.table_rows())].map(four)
+    [shape.deal_workgroups(tiles, shape.sort_tiles()), split_workgroups(1 << state.digit_bits, shape.table_rows())].map(four)
 }
 
 /// Scans the counts of pairs, and turns the number of all into the sizes of the steps that follow.
@@ -56,9 +56,9 @@ pub fn pair_args(
     state.overflow |= if total > pair_capacity { OVERFLOW_PAIRS } else { 0 };
     report.pair_total = total;
     report.overflow = state.overflow;
-    let runs = four(split_workgroups(count.div_ceil(shape.emit_pairs), shape.map_size));
+    let runs = four(shape.deal_workgroups(count.div_ceil(shape.emit_pairs), shape.map_size));
     arguments.emit_large = if state.has_large != 0 { runs } else { [0; 4] };
-    arguments.cell_ranges = four(split_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
+    arguments.cell_ranges = four(shape.deal_workgroups(count.div_ceil(shape.range_pairs), shape.map_size));
     for pass in 0..pass_capacity {
         let at = pass as usize;
         [arguments.sort[at], arguments.table_scan[at]] = pass_groups(shape, state, pass);
