@@ -140,7 +140,7 @@
 /**
  * Density that is used if none is given: cells a triangle.
  */
-#define GRIDWALK_DEFAULT_DENSITY 8.0
+#define GRIDWALK_DEFAULT_DENSITY 7.0
 
 /**
  * `GridwalkBuildInfo::overlap`: a cell lists the triangles that it overlaps. Fewer tests when tracing, above all with long thin triangles.

@@ -36,7 +36,7 @@ pub const GRIDWALK_MAX_GEOMETRIES: u32 = 65536u32;
 /// Most hits a ray that `gridwalk_cmd_nearest_hits` finds at once.
 pub const GRIDWALK_MAX_NEAREST: u32 = 64u32;
 /// Density that is used if none is given: cells a triangle.
-pub const GRIDWALK_DEFAULT_DENSITY: f32 = 8.0;
+pub const GRIDWALK_DEFAULT_DENSITY: f32 = 7.0;
 
 /// `GridwalkBuildInfo::overlap`: a cell lists the triangles that it overlaps. Fewer tests when tracing, above all with long thin triangles.
 pub const GRIDWALK_OVERLAP_EXACT: u32 = 0u32;

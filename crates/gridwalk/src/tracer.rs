@@ -128,7 +128,7 @@ pub struct BuildOptions {
 
 impl BuildOptions {
     /// Density unless something else is asked for: a rebuild and two million rays together take about the least from 5 to 12.
-    pub const DEFAULT_DENSITY: f32 = 8.0;
+    pub const DEFAULT_DENSITY: f32 = 7.0;
 }
 
 impl Default for BuildOptions {

@@ -115,7 +115,7 @@ pub struct Device {
 /// How the grid is built.
 #[derive(Args, Clone, Debug)]
 pub struct Grid {
-    /// Cells a triangle that the grid aims at [default: the scene's, or 8]
+    /// Cells a triangle that the grid aims at [default: the scene's, or 7]
     #[arg(long, value_name = "K", value_parser = positive, conflicts_with = "resolution", help_heading = "Grid")]
     pub density: Option<f32>,
     /// Cells along each axis, instead of by density
