@@ -133,7 +133,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (positions, indices) = terrain();
         let (rays, expected) = rays();
         let (vertex_count, triangle_count, ray_count) = (positions.len() as u32, indices.len() as u32, rays.len() as u32);
-        let capacity = Capacity { triangles: triangle_count, cells: 16 * triangle_count, pairs: 32 * triangle_count, leaf_cells: 0 };
+        let capacity = Capacity { triangles: triangle_count, cells: 16 * triangle_count, pairs: 64 * triangle_count, leaf_cells: 0 };
         let sizes = tracer.build_sizes(&capacity)?;
         let geometry = Geometry {
             positions: memory.upload(&positions),
