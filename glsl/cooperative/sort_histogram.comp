@@ -22,7 +22,8 @@ void histogram_alone() {
     uint pair_count = pairs_of(state, pass);
     uint bits = state.state.digit_bits;
     uint sentinel = state.state.sentinel;
-    uint tile_count = (pair_count + KEYS_EACH - 1u) / KEYS_EACH;
+    uint tile_size = sort_tile_of(pair_count);
+    uint tile_count = (pair_count + tile_size - 1u) / tile_size;
     if (tile >= tile_count) {
         return;
     }
@@ -32,8 +33,8 @@ void histogram_alone() {
         count[digit] = 0u;
     }
     uint begin = state.state.first_pair;
-    uint first = begin + tile * KEYS_EACH;
-    uint last = min(first + KEYS_EACH, begin + pair_count);
+    uint first = begin + tile * tile_size;
+    uint last = min(first + tile_size, begin + pair_count);
     for (uint i = first; i < last; ++i) {
         uint key = keys.word[i];
         count[digit_of(key, pass, bits)] += uint(key != sentinel);

@@ -7,9 +7,7 @@
 // is an invocation's where a tile of the sort is, and otherwise a workgroup's.
 
 #include "shared/scan.glsl"
-
-layout(constant_id = 1) const uint SORT_TILE = 8192;
-layout(constant_id = 2) const bool SORT_ALONE = false;
+#include "shared/sort_tile.glsl"
 
 layout(push_constant, std430) uniform TableScan {
     StateIn state;
@@ -21,7 +19,7 @@ layout(push_constant, std430) uniform TableScan {
 // Of an invocation in a turn, one after another.
 const uint ENTRIES_EACH = 8u;
 
-// Of at most 2^28 pairs: 32,768 turns by tiles of 8,192.
+// At most MOST_SORT_TILES turns.
 void scan_alone(uint row, uint tile_count) {
     if (row >> state.state.digit_bits != 0u) {
         return;
@@ -62,7 +60,9 @@ void scan_together(uint row, uint tile_count) {
 }
 
 void main() {
-    uint tile_count = (pairs_of(state, pass) + SORT_TILE - 1u) / SORT_TILE;
+    uint pair_count = pairs_of(state, pass);
+    uint tile = sort_tile_of(pair_count);
+    uint tile_count = (pair_count + tile - 1u) / tile;
     if (SORT_ALONE) {
         scan_alone(invocation_index(), tile_count);
     } else {

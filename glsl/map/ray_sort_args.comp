@@ -8,14 +8,13 @@
 
 #include "shared/build.glsl"
 #include "shared/ray_key.glsl"
+#include "shared/sort_tile.glsl"
 #include "shared/trace_types.glsl"
 
 layout(local_size_x = 1) in;
 layout(constant_id = 1) const uint MAP_SIZE = 64;
 layout(constant_id = 2) const uint SORT_BITS = 10;
-layout(constant_id = 3) const uint SORT_TILE = 8192;
 layout(constant_id = 4) const uint TABLE_ROWS = 1; // rows of the digit table a workgroup of table_scan
-layout(constant_id = 5) const uint SORT_TILES = 1; // tiles a workgroup of the sort
 
 layout(push_constant, std430) uniform RaySortArgs {
     StateOut state;
@@ -29,7 +28,6 @@ void main() {
     uint rays = traced_rays(count, max_rays, indirect);
     uint passes = (RAY_KEY_BITS + SORT_BITS - 1u) / SORT_BITS;
     uint digit_bits = (RAY_KEY_BITS + passes - 1u) / passes;
-    uint tiles = (rays + SORT_TILE - 1u) / SORT_TILE;
     state.state.pair_count = rays;
     state.state.kept_count = rays;
     state.state.key_bits = RAY_KEY_BITS;
@@ -38,6 +36,6 @@ void main() {
     state.state.first_pair = 0u;
     state.state.sentinel = SATURATED; // no ray's key: none is left behind
     arguments.arguments.ray_keys = uvec4(split_workgroups(rays, MAP_SIZE), 0u);
-    arguments.arguments.sort[0] = uvec4(split_workgroups(tiles, SORT_TILES), 0u);
+    arguments.arguments.sort[0] = uvec4(sort_workgroups(rays), 0u);
     arguments.arguments.table_scan[0] = uvec4(split_workgroups(1u << digit_bits, TABLE_ROWS), 0u);
 }

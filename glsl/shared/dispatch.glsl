@@ -20,7 +20,9 @@ uvec3 split_workgroups(uint count, uint size) {
 }
 
 layout(constant_id = 20) const uint STRANDS = 1;
+// Blocks that a strand is dealt, at most where workgroups along x admit it; and workgroups of a block, at least where there are as many.
 const uint ROUNDS = 64u;
+const uint BLOCK = 4u;
 
 // The same for elements that cost unlike: rays into the sky, rays into leaves. Drivers that run on a CPU give each of their threads one run of
 // consecutive workgroups, and wait for the last. So each z is a thread's there, to which blocks of workgroups, x long, are dealt in y rounds.
@@ -30,10 +32,9 @@ uvec3 deal_workgroups(uint count, uint size) {
         return split_workgroups(count, size);
     }
     uint groups = count / size + uint(count % size != 0u);
-    uint most = MAX_GROUPS_X * STRANDS;
-    uint rounds = max(clamp(groups / STRANDS, 1u, ROUNDS), groups / most + uint(groups % most != 0u));
-    uint blocks = rounds * STRANDS;
-    return uvec3(groups / blocks + uint(groups % blocks != 0u), rounds, STRANDS);
+    uint each = groups / STRANDS + uint(groups % STRANDS != 0u);
+    uint rounds = max(min((each + BLOCK - 1u) / BLOCK, ROUNDS), (each + MAX_GROUPS_X - 1u) / MAX_GROUPS_X);
+    return uvec3(each == 0u ? 0u : (each + rounds - 1u) / rounds, max(rounds, 1u), STRANDS);
 }
 
 #endif

@@ -7,12 +7,12 @@
 
 #include "shared/build.glsl"
 #include "shared/ping_pong.glsl"
+#include "shared/sort_tile.glsl"
 
 layout(local_size_x_id = 0) in;
 layout(local_size_x = 8) in;
 layout(constant_id = 1) const uint SORT_BITS = 10;
 layout(constant_id = 2) const uint KEYS_EACH = 1024;
-layout(constant_id = 3) const bool SORT_ALONE = false;
 
 // A row a digit, a column an invocation; at most 8,192 counters (32 KiB).
 shared uint counter[SORT_ALONE ? 1u : (1u << SORT_BITS) * gl_WorkGroupSize.x];

@@ -3,15 +3,14 @@
 #define SORT_ARGUMENTS_GLSL
 
 #include "shared/build.glsl"
+#include "shared/sort_tile.glsl"
 
 layout(constant_id = 2) const uint MAP_SIZE = 64;
-layout(constant_id = 3) const uint SORT_TILE = 8192;
-layout(constant_id = 4) const uint SORT_TILES = 1; // tiles a workgroup of the sort
 layout(constant_id = 5) const uint RANGE_PAIRS = 1; // pairs an invocation of cell_ranges
 layout(constant_id = 6) const uint TABLE_ROWS = 1; // rows of the digit table a workgroup of table_scan
 
 // Of sort_histogram and sort_scatter.
-uvec4 sort_groups(uint pairs) { return pairs > 0u ? uvec4(deal_workgroups((pairs + SORT_TILE - 1u) / SORT_TILE, SORT_TILES), 0u) : uvec4(0u); }
+uvec4 sort_groups(uint pairs) { return pairs > 0u ? uvec4(sort_workgroups(pairs), 0u) : uvec4(0u); }
 
 // Of table_scan; none without a pair.
 uvec4 table_groups(uint pairs, uint digit_bits) {

@@ -41,6 +41,12 @@ pub struct Shape {
     pub strands: u32,
 }
 
+/// Fewer keys than that are not worth a column of the digit table, whose rows are scanned by an invocation each: a turn for each tile.
+const LEAST_SORT_TILE: u32 = 512;
+
+/// Most tiles of a sort by invocations.
+const MOST_SORT_TILES: u32 = 32_768;
+
 /// Most strands of a launch: fewer workgroups along z than every device takes.
 const MOST_STRANDS: u32 = 1024;
 
@@ -139,7 +145,7 @@ impl Shape {
         if self.reduce_bricks < 4 { self.reduce_bricks } else { 4 }
     }
 
-    /// Keys a tile of the sort.
+    /// Keys a tile of the sort, at most.
     pub const fn sort_tile(&self) -> u32 {
         if self.sort_alone { self.sort_keys } else { self.sort_size * self.sort_keys }
     }
@@ -147,7 +153,29 @@ impl Shape {
     /// Most pairs or rays that are sorted: where an invocation scans a row of the digit table by itself, it takes a turn for each tile, and
     /// 32,768 of them keep to the budget of its loops.
     pub const fn most_sorted(&self) -> u32 {
-        if self.sort_alone { self.sort_tile().saturating_mul(32_768) } else { u32::MAX }
+        if self.sort_alone { self.sort_tile().saturating_mul(MOST_SORT_TILES) } else { u32::MAX }
+    }
+
+    /// Most tiles of so many pairs. Those of invocations fill the workgroups of each strand: one with a workgroup more than the others would be
+    /// waited for. No more for fewer pairs, as later passes have.
+    pub fn most_sort_tiles(&self, pairs: u32) -> u32 {
+        let tiles = pairs.div_ceil(self.sort_tile());
+        if !self.sort_alone {
+            return tiles;
+        }
+        let [x, y, z] = self.deal_workgroups(tiles, self.sort_tiles());
+        let most = pairs.div_ceil(self.sort_tile().min(LEAST_SORT_TILE)).min(MOST_SORT_TILES);
+        (x * y * z * self.sort_tiles()).min(most)
+    }
+
+    /// Keys of a tile of so many pairs.
+    pub fn sort_tile_of(&self, pairs: u32) -> u32 {
+        if self.sort_alone && pairs > 0 { pairs.div_ceil(self.most_sort_tiles(pairs)) } else { self.sort_tile() }
+    }
+
+    /// Workgroups of `sort_histogram` and `sort_scatter` for so many pairs.
+    pub fn sort_workgroups(&self, pairs: u32) -> [u32; 3] {
+        self.deal_workgroups(self.most_sort_tiles(pairs), self.sort_tiles())
     }
 
     /// Tiles a workgroup of the sort.
@@ -196,7 +224,7 @@ impl Shape {
 
     /// Entries of the sort's digit table: a row a digit, a column a tile.
     pub fn table_entries(&self, pairs: u32) -> u64 {
-        u64::from(pairs.div_ceil(self.sort_tile())) << self.sort_bits
+        u64::from(self.most_sort_tiles(pairs)) << self.sort_bits
     }
 
     /// The value of a kernel's specialization constant by its name.
@@ -242,7 +270,31 @@ impl Shape {
 
 #[cfg(test)]
 mod tests {
-    use super::Shape;
+    use super::{MOST_SORT_TILES, Shape};
+
+    #[test]
+    fn tiles_of_a_sort() {
+        for (sort_size, sort_keys, strands) in
+            [(8, 8_192, 1), (8, 8_192, 2), (8, 8_192, 64), (8, 8_192, 1_000), (256, 1_000, 1_024), (1, 5, 3)]
+        {
+            let shape = Shape { sort_size, sort_keys, strands, ..Shape::CPU };
+            let mut before = 0;
+            let small = 1..=70_000;
+            let large = (70_000..shape.most_sorted().min(1 << 28)).step_by(997_001).chain([shape.most_sorted().min(1 << 28)]);
+            for pairs in small.chain(large) {
+                let (most, tile) = (shape.most_sort_tiles(pairs), shape.sort_tile_of(pairs));
+                let tiles = pairs.div_ceil(tile);
+                assert!((1..=sort_keys).contains(&tile) && tiles <= most && most <= MOST_SORT_TILES, "{pairs} pairs, {shape:?}");
+                // A pass of fewer pairs has the workgroups of all.
+                assert!(most >= before, "{pairs} pairs, {shape:?}");
+                before = most;
+                let [x, y, z] = shape.sort_workgroups(pairs);
+                assert!(most <= x * y * z * sort_size && x <= 65_535 && y <= 65_535 && z == strands.max(1), "{pairs} pairs, {shape:?}");
+            }
+        }
+        // Three workgroups a strand, none of which has more tiles than another.
+        assert_eq!([Shape::CPU.most_sort_tiles(290_000), Shape::CPU.sort_tile_of(290_000)], [48, 6_042]);
+    }
 
     #[test]
     fn shapes_that_cannot_be() {

@@ -312,14 +312,15 @@ pub static LEAF_ARGS: Kernel = Kernel {
     spec_constants: &[
         (1, "ITEMS_EACH", 16),
         (2, "MAP_SIZE", 64),
-        (3, "SORT_TILE", 8192),
-        (4, "SORT_TILES", 1),
         (5, "RANGE_PAIRS", 1),
         (6, "TABLE_ROWS", 1),
         (7, "SPLIT_CELLS_EACH", 1),
         (8, "SORT_SIZE", 8),
         (9, "LEAF_RUN", 0),
         (20, "STRANDS", 1),
+        (21, "SORT_TILE", 8192),
+        (22, "SORT_TILES", 1),
+        (23, "SORT_ALONE", 0),
     ],
 };
 
@@ -428,11 +429,12 @@ pub static LEAF_SORT: Kernel = Kernel {
     spec_constants: &[
         (1, "LEAF_RUN", 6000),
         (2, "MAP_SIZE", 64),
-        (3, "SORT_TILE", 8192),
-        (4, "SORT_TILES", 1),
         (5, "RANGE_PAIRS", 1),
         (6, "TABLE_ROWS", 1),
         (20, "STRANDS", 1),
+        (21, "SORT_TILE", 8192),
+        (22, "SORT_TILES", 1),
+        (23, "SORT_ALONE", 0),
     ],
 };
 
@@ -545,12 +547,13 @@ pub static PAIR_ARGS: Kernel = Kernel {
     spec_constants: &[
         (1, "ITEMS_EACH", 16),
         (2, "MAP_SIZE", 64),
-        (3, "SORT_TILE", 8192),
-        (4, "SORT_TILES", 1),
         (5, "RANGE_PAIRS", 1),
         (6, "TABLE_ROWS", 1),
         (7, "PAIRS_EACH", 16),
         (20, "STRANDS", 1),
+        (21, "SORT_TILE", 8192),
+        (22, "SORT_TILES", 1),
+        (23, "SORT_ALONE", 0),
     ],
 };
 
@@ -584,10 +587,11 @@ pub static RAY_SORT_ARGS: Kernel = Kernel {
     spec_constants: &[
         (1, "MAP_SIZE", 64),
         (2, "SORT_BITS", 10),
-        (3, "SORT_TILE", 8192),
         (4, "TABLE_ROWS", 1),
-        (5, "SORT_TILES", 1),
         (20, "STRANDS", 1),
+        (21, "SORT_TILE", 8192),
+        (22, "SORT_TILES", 1),
+        (23, "SORT_ALONE", 0),
     ],
 };
 
@@ -631,7 +635,14 @@ pub static SORT_HISTOGRAM: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 40,
     accesses: &[("state", Access::Read), ("keys_a", Access::Read), ("keys_b", Access::Read), ("table", Access::Write)],
-    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0), (20, "STRANDS", 1)],
+    spec_constants: &[
+        (1, "SORT_BITS", 10),
+        (2, "KEYS_EACH", 1024),
+        (20, "STRANDS", 1),
+        (21, "SORT_TILE", 8192),
+        (22, "SORT_TILES", 1),
+        (23, "SORT_ALONE", 0),
+    ],
 };
 
 /// Kernel `sort_scatter`, from `glsl/cooperative/sort_scatter.comp`.
@@ -652,7 +663,14 @@ pub static SORT_SCATTER: Kernel = Kernel {
         ("sums", Access::Read),
         ("kept", Access::Write),
     ],
-    spec_constants: &[(1, "SORT_BITS", 10), (2, "KEYS_EACH", 1024), (3, "SORT_ALONE", 0), (20, "STRANDS", 1)],
+    spec_constants: &[
+        (1, "SORT_BITS", 10),
+        (2, "KEYS_EACH", 1024),
+        (20, "STRANDS", 1),
+        (21, "SORT_TILE", 8192),
+        (22, "SORT_TILES", 1),
+        (23, "SORT_ALONE", 0),
+    ],
 };
 
 /// Kernel `split_cells`, from `glsl/cooperative/split_cells.comp`.
@@ -684,7 +702,7 @@ pub static TABLE_SCAN: Kernel = Kernel {
     local_size_ids: [Some(0), None, None],
     push_constant_size: 32,
     accesses: &[("state", Access::Read), ("table", Access::ReadWrite), ("sums", Access::Write)],
-    spec_constants: &[(1, "SORT_TILE", 8192), (2, "SORT_ALONE", 0), (20, "STRANDS", 1)],
+    spec_constants: &[(20, "STRANDS", 1), (21, "SORT_TILE", 8192), (22, "SORT_TILES", 1), (23, "SORT_ALONE", 0)],
 };
 
 /// Kernel `trace_args`, from `glsl/map/trace_args.comp`.

@@ -23,7 +23,7 @@ fn left(gpu: &Gpu, bricks: u32, groups: [u32; 3]) -> Vec<u32> {
 fn every_workgroup_has_one_place() {
     let seed = 311;
     let mut random = Random::new(seed);
-    // Rounds of one workgroup, of more; what is left over; more than 65,535.
+    // Blocks that are short, of four workgroups, of more; what is left over; more than 65,535.
     let around = [64, 256, 512, 1_024, 2_048, 4_096, 65_535, 131_070].into_iter().flat_map(|edge: u32| [edge - 1, edge, edge + 1]);
     let any = std::iter::repeat_with(|| 1 + random.below(140_000)).take(20);
     let all: Vec<u32> = (1..=130).chain(around).chain(any).collect();

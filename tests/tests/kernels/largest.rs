@@ -22,7 +22,7 @@ fn devices() -> [&'static Gpu; 2] {
 fn the_largest_digit_table() {
     for gpu in devices() {
         let shape = gpu.tracer.shape();
-        let (tiles, digit_bits) = (MAX_PAIRS.div_ceil(shape.sort_tile()), 3);
+        let (tiles, digit_bits) = (MAX_PAIRS.div_ceil(shape.sort_tile_of(MAX_PAIRS)), 3);
         let mut random = Random::new(1);
         let mut counts: Vec<u32> = (0..tiles << digit_bits).map(|_| random.below(10_000)).collect();
         let mut sums = vec![0; 1 << digit_bits];

@@ -18,7 +18,7 @@ const SENTINEL: u32 = 123_456_789;
 fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
     let shape = gpu.tracer.shape();
     let count = keys.len() as u32;
-    let tiles = count.div_ceil(shape.sort_tile());
+    let tiles = shape.most_sort_tiles(count);
     let (pass_count, digit_bits) = passes_of(key_bits, shape.sort_bits);
     let table_count = tiles << digit_bits;
     let kept_count = keys.iter().filter(|key| **key != SENTINEL).count() as u32;
@@ -38,7 +38,7 @@ fn check(gpu: &Gpu, keys: &[u32], key_bits: u32, what: &str) {
     let mut expected = vec![CANARY; table_count as usize];
     let mut expected_sums = vec![CANARY; 1 << digit_bits];
     for pass in 0..pass_count {
-        let groups = split_workgroups(tiles, shape.sort_tiles());
+        let groups = shape.sort_workgroups(count);
         let scan_groups = split_workgroups(1 << digit_bits, shape.table_rows());
         gpu.launch(&SORT_HISTOGRAM, 0, &[&device_state, &keys_a, &keys_b, &table], &[pass], groups);
         sort_histogram(&shape, groups, &state, &from.0, &mut expected, pass);

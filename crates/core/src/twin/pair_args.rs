@@ -31,8 +31,7 @@ pub(super) fn pass_groups(shape: &Shape, state: &BuildState, pass: u32) -> [[u32
     if pass >= state.pass_count || state.pair_count == 0 {
         return [[0; 4]; 2];
     }
-    let tiles = state.pair_count.div_ceil(shape.sort_tile());
-    [shape.deal_workgroups(tiles, shape.sort_tiles()), split_workgroups(1 << state.digit_bits, shape.table_rows())].map(four)
+    [shape.sort_workgroups(state.pair_count), split_workgroups(1 << state.digit_bits, shape.table_rows())].map(four)
 }
 
 /// Scans the counts of pairs, and turns the number of all into the sizes of the steps that follow.

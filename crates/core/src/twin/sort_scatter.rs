@@ -28,10 +28,10 @@ pub fn sort_scatter(
     pass: u32,
 ) {
     let (pair_count, bits) = (pairs_of(state, pass), state.digit_bits);
-    let tile_size = shape.sort_tile() as usize;
-    let tile_count = pair_count.div_ceil(shape.sort_tile());
+    let tile_size = shape.sort_tile_of(pair_count);
+    let tile_count = pair_count.div_ceil(tile_size);
     let first = state.first_pair as usize;
-    let tiles = pairs.keys[first..][..pair_count as usize].chunks(tile_size).zip(pairs.values[first..].chunks(tile_size));
+    let tiles = pairs.keys[first..][..pair_count as usize].chunks(tile_size as usize).zip(pairs.values[first..].chunks(tile_size as usize));
     for (tile, (keys, values)) in sort_tiles(shape, groups).zip(tiles) {
         let mut rows = sums[..1 << bits].to_vec();
         let end = exclusive_scan(&mut rows, state.first_pair);
