@@ -25,7 +25,13 @@ pub struct Session {
 
 impl Session {
     /// Opens the device, brings the scene to it as it is at time 0 and builds the grid.
-    pub fn open(device: &high::Device, grid: &high::Grid, animation: Animation, started: Instant) -> Result<Session> {
+    pub fn open(
+        device: &high::Device,
+        grid: &high::Grid,
+        reports: &high::Reports,
+        animation: Animation,
+        started: Instant,
+    ) -> Result<Session> {
         let context = Context::new(&ContextDesc {
             device: device.selector.clone(),
             validation: device.validate,
@@ -36,7 +42,8 @@ impl Session {
         report::warn_of_cpu(info);
         tracing::info!("device {} ({}), driver {}", info.name, info.kind.name(), report::driver(info));
 
-        let settings = build_settings(grid, &animation.scene.defaults);
+        let time_steps = reports.stats || reports.json;
+        let settings = BuildSettings { time_steps, ..build_settings(grid, &animation.scene.defaults) };
         let mut options = PlayerOptions::default();
         options.build = settings;
         let player = Player::new(&context, animation, &options)?;
@@ -179,6 +186,7 @@ pub fn build_settings(grid: &high::Grid, defaults: &RenderDefaults) -> BuildSett
             None => library.overlap,
         },
         split: grid.levels.map_or(library.split, |levels| levels > 1),
+        ..library
     }
 }
 

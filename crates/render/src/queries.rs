@@ -25,6 +25,25 @@ impl Queries {
         (self.pool != vk::QueryPool::null()).then_some(Timestamps { pool: self.pool, first_query: 0 })
     }
 
+    /// Records something between the first two timestamps, of at least two. The command buffer is recording outside of a render pass.
+    pub(crate) fn around<R>(&self, cmd: vk::CommandBuffer, record: impl FnOnce() -> R) -> R {
+        let (device, pool) = (self.context.device(), self.pool);
+        let stamp = |query| {
+            if pool != vk::QueryPool::null() {
+                // SAFETY: the command buffer is recording (the caller is within `submit`); the pool is of this device, idle, and holds both
+                // queries, each of which is reset in this command buffer before it is written once.
+                unsafe {
+                    device.cmd_reset_query_pool(cmd, pool, query, 1);
+                    device.cmd_write_timestamp2(cmd, vk::PipelineStageFlags2::ALL_COMMANDS, pool, query);
+                }
+            }
+        };
+        stamp(0);
+        let result = record();
+        stamp(1);
+        result
+    }
+
     /// The first `count` queries, after the submission that wrote each of them; none without timestamps.
     pub(crate) fn read(&self, count: u32) -> Result<Vec<u64>> {
         if self.pool == vk::QueryPool::null() || count == 0 {

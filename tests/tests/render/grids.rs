@@ -196,6 +196,25 @@ fn room_for_leaf_cells_is_found_and_kept() {
     assert_eq!(flat.stats().report.pairs, report.pairs);
 }
 
+/// Steps are timed where they are asked for; the whole always is.
+#[test]
+fn steps_are_timed_on_demand() {
+    let context = Context::new(&ContextDesc::default()).unwrap();
+    let gpu = GpuScene::upload(&context, &crowded()).unwrap();
+    let mut grid = GridBuilder::new(&context).unwrap().build(&gpu, &BuildSettings::default()).unwrap();
+    for time_steps in [false, true, false, true] {
+        grid.time_steps(time_steps);
+        grid.rebuild(&gpu).unwrap();
+        let stats = grid.stats();
+        assert_eq!(!stats.steps.is_empty(), time_steps && context.has_timestamps());
+        assert_eq!(stats.ms > 0.0, context.has_timestamps());
+        if time_steps {
+            let sum: f64 = stats.steps.iter().map(|step| step.ms).sum();
+            assert!((sum - stats.ms).abs() <= 1e-6 * stats.ms, "{sum} of {} ms", stats.ms);
+        }
+    }
+}
+
 /// The second level costs nothing where no cell is split, and is back with the first build that splits one.
 #[test]
 fn the_second_level_comes_and_goes() {
@@ -204,7 +223,7 @@ fn the_second_level_comes_and_goes() {
         [crowded(), scene(vec![(generate::plane([1.0; 2], 40), matt(0.5))])].map(|scene| GpuScene::upload(&context, &scene).unwrap());
     let builder = GridBuilder::new(&context).unwrap();
     let splits = |grid: &Grid| grid.stats().steps.iter().any(|step| step.name == "leaf_count") || !context.has_timestamps();
-    let mut grid = builder.build(&crowded, &BuildSettings::default()).unwrap();
+    let mut grid = builder.build(&crowded, &BuildSettings { time_steps: true, ..BuildSettings::default() }).unwrap();
     let first = grid.stats().report;
     assert!(first.leaf_pairs > 0 && splits(&grid));
     for turn in 0..2 {

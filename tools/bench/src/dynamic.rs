@@ -111,7 +111,7 @@ fn frame(
         wait_ms: seek.wait_ms,
         deform_ms: seek.deform_ms,
         deform_steps: seek.deform_steps.iter().map(Step::of).collect(),
-        steps: median_steps(&field.ours.take_steps()),
+        steps: median_steps(&field.ours.steps(arguments.runs)?),
         rays: sets.iter().map(|set| RayCount { kind: set.kind.to_owned(), rays: set.rays.len() as u64 }).collect(),
         ours,
         rivals: sides,

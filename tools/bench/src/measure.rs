@@ -98,8 +98,8 @@ pub fn measure(builder: &GridBuilder, rivals: &Rivals, arguments: &Arguments, lo
         rebuilt_bytes = field.prepare(Tree::Fast)?;
         if arguments.measures(Part::Rebuild) {
             let turns = turns(runs, &mut field.all(), |contender| contender.rebuild())?;
-            steps = median_steps(&field.ours.take_steps());
             rebuild = Some(field.compare(&times(&turns), false));
+            steps = median_steps(&field.ours.steps(runs)?);
         }
         if arguments.measures(Part::Frame) {
             let sets = [sets.camera(), sets.shadow(field.ours.grid())?];

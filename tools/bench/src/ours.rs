@@ -17,8 +17,6 @@ enum Source<'a> {
 pub struct Ours<'a> {
     source: Source<'a>,
     batches: Vec<(Query, RayBatch)>,
-    /// Steps of each rebuild.
-    steps: Vec<Vec<StepTime>>,
     /// Milliseconds of each trace that sorting took.
     sorts: Vec<f64>,
 }
@@ -26,12 +24,12 @@ pub struct Ours<'a> {
 impl<'a> Ours<'a> {
     /// A grid over a scene.
     pub fn still(grid: Grid, scene: &'a GpuScene) -> Ours<'a> {
-        Ours { source: Source::Still(Box::new(grid), scene), batches: Vec::new(), steps: Vec::new(), sorts: Vec::new() }
+        Ours { source: Source::Still(Box::new(grid), scene), batches: Vec::new(), sorts: Vec::new() }
     }
 
     /// A player's grid, over what it shows now.
     pub fn moving(player: &'a mut Player) -> Ours<'a> {
-        Ours { source: Source::Moving(player), batches: Vec::new(), steps: Vec::new(), sorts: Vec::new() }
+        Ours { source: Source::Moving(player), batches: Vec::new(), sorts: Vec::new() }
     }
 
     /// The grid.
@@ -42,9 +40,25 @@ impl<'a> Ours<'a> {
         }
     }
 
-    /// The steps of all rebuilds since the last call but the first, which is no turn that counts.
-    pub fn take_steps(&mut self) -> Vec<Vec<StepTime>> {
-        std::mem::take(&mut self.steps).into_iter().skip(1).collect()
+    /// The steps of some more rebuilds, of which the first does not count. Timestamps between the steps make them slower on a CPU driver, so no
+    /// rebuild that is compared has them.
+    pub fn steps(&mut self, runs: u32) -> Result<Vec<Vec<StepTime>>> {
+        self.time_steps(true);
+        self.rebuild()?;
+        let mut steps = Vec::new();
+        for _ in 0..runs {
+            self.rebuild()?;
+            steps.push(self.grid().stats().steps.clone());
+        }
+        self.time_steps(false);
+        Ok(steps)
+    }
+
+    fn time_steps(&mut self, time_steps: bool) {
+        match &mut self.source {
+            Source::Still(grid, _) => grid.time_steps(time_steps),
+            Source::Moving(player) => player.time_steps(time_steps),
+        }
     }
 }
 
@@ -69,10 +83,7 @@ impl Contender for Ours<'_> {
             Source::Still(grid, scene) => grid.rebuild(scene)?,
             Source::Moving(player) => player.rebuild()?,
         }
-        let stats = self.grid().stats();
-        let (ms, steps) = (stats.ms, stats.steps.clone());
-        self.steps.push(steps);
-        Ok(ms)
+        Ok(self.grid().stats().ms)
     }
 
     fn load(&mut self, sets: &[Arc<Set>]) -> Result<()> {

@@ -25,7 +25,7 @@ pub fn run(low: low::Cast, quiet: bool, interrupt: &Interrupt) -> Result<Exit> {
     output::check(&cast.target, cast.overwrite)?;
     let rays = read_rays(&cast.rays, cast.max_rays_bytes)?;
     let scene = scene::read(&cast.source, &cast.load)?;
-    let mut session = Session::open(&cast.device, &cast.grid, Animation::still(scene), started)?;
+    let mut session = Session::open(&cast.device, &cast.grid, &cast.reports, Animation::still(scene), started)?;
     session.tell_grid();
     session.measure_build(cast.repeat)?;
 

@@ -43,7 +43,7 @@ pub fn run(low: low::Render, quiet: bool, interrupt: &Interrupt) -> Result<Exit>
     let camera = high::camera(&render.picture.view, &animation, time, [settings.width, settings.height], None)?;
     tracing::info!("camera at {:?}, towards {:?}, {} degrees high", camera.eye, camera.target, camera.vertical_fov_degrees);
 
-    let mut session = Session::open(&render.device, &render.grid, animation, started)?;
+    let mut session = Session::open(&render.device, &render.grid, &render.reports, animation, started)?;
     session.seek(time, &[])?;
     session.tell_grid();
     session.measure_build(render.repeat)?;

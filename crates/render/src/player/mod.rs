@@ -258,6 +258,11 @@ impl Player {
         self.grid.rebuild(&self.scene)
     }
 
+    /// Whether the next builds of the grid time each step: see [`BuildSettings::time_steps`].
+    pub fn time_steps(&mut self, time_steps: bool) {
+        self.grid.time_steps(time_steps);
+    }
+
     /// The animation. Its scene is that of time 0, with all materials and textures that key-frames have added so far.
     pub fn animation(&self) -> &Animation {
         &self.animation

@@ -44,7 +44,7 @@ pub fn run(low: low::Animate, quiet: bool, interrupt: &Interrupt) -> Result<Exit
     let shown = Shown::new(&animate.picture, &animation.scene.defaults);
     check(&animate, &frames, movie_rate, &settings)?;
 
-    let session = Session::open(&animate.device, &animate.grid, animation, started)?;
+    let session = Session::open(&animate.device, &animate.grid, &animate.reports, animation, started)?;
     let common = picture::metadata(&animate.source, session.context.device_info(), &settings);
     // Before there is any file that would be left behind.
     let deferred = interrupt.defer();
