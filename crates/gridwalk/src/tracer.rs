@@ -166,8 +166,8 @@ pub struct BuildInfo {
     /// and leaf cells that there would be, so that a scene that moves can have the second level once it needs it. Steps and timestamps are then
     /// those of a capacity without leaf cells.
     pub second_level: bool,
-    /// Times of the steps, if wanted; lavapipe takes 0.02 ms for each. [`BuildSizes::timestamp_count`] queries, of which a build resets and writes one more than it has steps;
-    /// without `second_level` it has fewer, and waiting for the others never ends.
+    /// Times of the steps, if wanted; lavapipe takes 0.02 ms for each. [`BuildSizes::timestamp_count`] queries, of which a build resets and
+    /// writes one more than it has steps; without `second_level` it has fewer, and waiting for the others never ends.
     pub timestamps: Option<Timestamps>,
 }
 
